@@ -1,0 +1,2 @@
+//! The `valvescope` binary.
+fn main() {}
