@@ -12,16 +12,32 @@ pub struct Scale {
 
 impl Scale {
     /// Raw counts are the value.
-    pub const ONE: Self = Self { num: 1, den: 1, decimals: 0 };
+    pub const ONE: Self = Self {
+        num: 1,
+        den: 1,
+        decimals: 0,
+    };
     /// One count is a tenth.
-    pub const TENTH: Self = Self { num: 1, den: 10, decimals: 1 };
+    pub const TENTH: Self = Self {
+        num: 1,
+        den: 10,
+        decimals: 1,
+    };
     /// One count is a hundredth.
-    pub const HUNDREDTH: Self = Self { num: 1, den: 100, decimals: 2 };
+    pub const HUNDREDTH: Self = Self {
+        num: 1,
+        den: 100,
+        decimals: 2,
+    };
 
     /// `num / den`, shown with `decimals` digits after the point. A zero denominator counts as 1.
     #[must_use]
     pub const fn new(num: u32, den: u32, decimals: u8) -> Self {
-        Self { num, den: if den == 0 { 1 } else { den }, decimals }
+        Self {
+            num,
+            den: if den == 0 { 1 } else { den },
+            decimals,
+        }
     }
 
     /// Numerator of the factor.
@@ -69,7 +85,11 @@ impl fmt::Display for Scale {
         }
         if den == 1 {
             let digits = self.den.checked_ilog10().unwrap_or(0);
-            let exact = Self { decimals: u8::try_from(digits).unwrap_or(0), num: 1, den: self.den };
+            let exact = Self {
+                decimals: u8::try_from(digits).unwrap_or(0),
+                num: 1,
+                den: self.den,
+            };
             return exact.apply(i64::from(self.num)).fmt(f);
         }
         write!(f, "{}/{}", self.num, self.den)
@@ -101,7 +121,11 @@ impl fmt::Display for Decimal {
         if places == 0 {
             write!(f, "{whole}")
         } else {
-            write!(f, "{whole}.{fraction:0width$}", width = usize::from(self.scale.decimals.min(9)))
+            write!(
+                f,
+                "{whole}.{fraction:0width$}",
+                width = usize::from(self.scale.decimals.min(9))
+            )
         }
     }
 }

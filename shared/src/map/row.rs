@@ -13,6 +13,12 @@ pub struct Source {
     pub part: &'static str,
 }
 
+impl core::fmt::Display for Source {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{}, {}", self.doc, self.part)
+    }
+}
+
 /// How far a fact can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Trust {

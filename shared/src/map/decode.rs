@@ -1,0 +1,419 @@
+//! Registers to values, by the rows of a device map.
+
+use super::row::{Access, DeviceMap, Kind, Row, Settled};
+use crate::address::{Address, Table};
+use crate::pdu::defs;
+use crate::problem::{Finding, Problem};
+use crate::reader::Reader;
+use crate::scale::Scale;
+use crate::tree::{Decoded, FieldId, Name};
+use crate::value::{ACTIVE, Quality, Value};
+
+/// A value together with how far it can be relied on and what is wrong with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// What the words say.
+    pub value: Value,
+    /// How far to rely on it.
+    pub quality: Quality,
+    /// Why not, if there is a reason.
+    pub finding: Option<Finding>,
+}
+
+/// Reads one value of a device from exactly the bytes of its words, high byte first.
+///
+/// Allocates nothing; this is the hot path of bulk decoding. Bytes of another length than the row
+/// wants give [`Value::Raw`].
+#[must_use]
+pub fn value(row: &'static Row, bytes: &[u8]) -> Judged {
+    let judged = by_kind(row, bytes);
+    let open = row.reading.is_some_and(|r| r.settled == Settled::No);
+    if open && judged.quality == Quality::Good && row.kind != Kind::Reserved {
+        return Judged {
+            quality: Quality::Disputed,
+            ..judged
+        };
+    }
+    judged
+}
+
+fn by_kind(row: &'static Row, bytes: &[u8]) -> Judged {
+    match (row.kind, bytes) {
+        (Kind::U16, &[high, low]) => number(row, i64::from(u16::from_be_bytes([high, low]))),
+        (Kind::I16, &[high, low]) => signed(row, i16::from_be_bytes([high, low])),
+        (Kind::U32, &[a, b, c, d]) => number(row, i64::from(u32::from_be_bytes([a, b, c, d]))),
+        (Kind::Enum, &[high, low]) => code(row, u32::from(u16::from_be_bytes([high, low]))),
+        (Kind::Bits, &[high, low]) => flags(row, u32::from(u16::from_be_bytes([high, low]))),
+        (Kind::Bits, &[a, b, c, d]) => flags(row, u32::from_be_bytes([a, b, c, d])),
+        (Kind::BcdDate, &[day, month, century, year]) => date(day, month, [century, year]),
+        (Kind::BcdTime, &[0, hour, minute, second]) => time(hour, minute, second),
+        (Kind::BcdTime, &[_, _, _, _]) => invalid("a BCD time (00HH MMSS)"),
+        (Kind::Ascii | Kind::Ascii7, text) => characters(text),
+        (Kind::Torque, &[unit, ..]) => amount(row, unit),
+        (Kind::Curve, _) => good(Value::Group),
+        (Kind::Hex, &[high, low]) => good(Value::Hex(u32::from(u16::from_be_bytes([high, low])))),
+        (Kind::Hex, &[a, b, c, d]) => good(Value::Hex(u32::from_be_bytes([a, b, c, d]))),
+        _ => good(Value::Raw),
+    }
+}
+
+const fn good(value: Value) -> Judged {
+    Judged {
+        value,
+        quality: Quality::Good,
+        finding: None,
+    }
+}
+
+const fn invalid(what: &'static str) -> Judged {
+    Judged {
+        value: Value::Raw,
+        quality: Quality::Invalid,
+        finding: Some(Finding::BadDigits { what }),
+    }
+}
+
+fn number(row: &'static Row, raw: i64) -> Judged {
+    let value = Value::Number {
+        raw,
+        scale: row.scale,
+    };
+    match row.range {
+        Some((min, max)) if raw < i64::from(min) || raw > i64::from(max) => Judged {
+            value,
+            quality: Quality::OutOfRange,
+            finding: Some(Finding::Range { got: raw, min, max }),
+        },
+        _ => good(value),
+    }
+}
+
+/// Reading E20: two's complement; in a register of -127 to 127, a word of 129 to 255 can only be
+/// an 8-bit value that was widened without its sign.
+fn signed(row: &'static Row, raw: i16) -> Judged {
+    if row.range == Some((-127, 127)) && (129..=255).contains(&raw) {
+        let value = Value::Number {
+            raw: i64::from(raw).saturating_sub(256),
+            scale: row.scale,
+        };
+        return Judged {
+            value,
+            quality: Quality::Disputed,
+            finding: None,
+        };
+    }
+    number(row, i64::from(raw))
+}
+
+fn code(row: &'static Row, raw: u32) -> Judged {
+    let Some(set) = row.set else {
+        return good(Value::Hex(raw));
+    };
+    let value = Value::Code { raw, set };
+    if set.get(raw).is_some() {
+        // A code can have a name and still be outside the range of this register.
+        return Judged {
+            value,
+            ..number(row, i64::from(raw))
+        };
+    }
+    Judged {
+        value,
+        quality: Quality::Invalid,
+        finding: Some(Finding::NoName { code: raw }),
+    }
+}
+
+fn flags(row: &'static Row, raw: u32) -> Judged {
+    let Some(set) = row.set else {
+        return good(Value::Hex(raw));
+    };
+    let named = set.members.iter().fold(0_u32, |bits, m| {
+        bits | 1_u32.wrapping_shl(u32::from(m.value))
+    });
+    let unused = raw & !named;
+    let finding = if unused == 0 {
+        None
+    } else {
+        Some(Finding::UnusedBits { bits: unused })
+    };
+    Judged {
+        value: Value::Flags { raw, set },
+        quality: Quality::Good,
+        finding,
+    }
+}
+
+/// Two decimal digits in one byte.
+fn bcd(byte: u8) -> Option<u8> {
+    let (high, low) = (byte >> 4, byte & 0x0F);
+    (high < 10 && low < 10).then(|| high.saturating_mul(10).saturating_add(low))
+}
+
+fn date(day: u8, month: u8, year: [u8; 2]) -> Judged {
+    if (day, month, year) == (0, 0, [0, 0]) {
+        return good(Value::Unavailable("no date stored"));
+    }
+    let [century, year] = year;
+    match (bcd(day), bcd(month), bcd(century), bcd(year)) {
+        (Some(day @ 1..=31), Some(month @ 1..=12), Some(century), Some(year)) => {
+            let year = u16::from(century)
+                .saturating_mul(100)
+                .saturating_add(u16::from(year));
+            good(Value::Date { year, month, day })
+        }
+        _ => invalid("a BCD date (DDMM YYYY)"),
+    }
+}
+
+fn time(hour: u8, minute: u8, second: u8) -> Judged {
+    match (bcd(hour), bcd(minute), bcd(second)) {
+        (Some(hour @ 0..=23), Some(minute @ 0..=59), Some(second @ 0..=59)) => good(Value::Time {
+            hour,
+            minute,
+            second,
+        }),
+        _ => invalid("a BCD time (00HH MMSS)"),
+    }
+}
+
+fn characters(text: &[u8]) -> Judged {
+    if text.iter().all(|b| matches!(b, 0 | b' ')) {
+        return good(Value::Unavailable("empty"));
+    }
+    if text.iter().all(|b| matches!(b, 0 | 0x20..=0x7E | 0xA0..)) {
+        return good(Value::Text);
+    }
+    Judged {
+        value: Value::Text,
+        quality: Quality::Invalid,
+        finding: Some(Finding::BadDigits {
+            what: "printable characters",
+        }),
+    }
+}
+
+/// Reading E17: the first byte is a unit code 0 to 3, perhaps as a character.
+fn amount(row: &'static Row, unit: u8) -> Judged {
+    let code = if (0x30..=0x33).contains(&unit) {
+        unit & 0x0F
+    } else {
+        unit
+    };
+    let name = row
+        .set
+        .and_then(|s| s.get(u32::from(code)))
+        .map(|m| m.label);
+    Judged {
+        value: Value::Amount { unit: name },
+        quality: if name.is_some() {
+            Quality::Good
+        } else {
+            Quality::Invalid
+        },
+        finding: if name.is_some() {
+            None
+        } else {
+            Some(Finding::NoName {
+                code: u32::from(unit),
+            })
+        },
+    }
+}
+
+/// Values of a block of registers without a tree: each whole row with its judged value.
+///
+/// Rows of which only a part lies in the block are left out. `data` are the words from `start`.
+pub fn values(
+    map: &'static DeviceMap,
+    table: Table,
+    start: Address,
+    data: &[u8],
+) -> impl Iterator<Item = (&'static Row, Judged)> {
+    let count = u16::try_from(data.len().checked_div(2).unwrap_or(0)).unwrap_or(u16::MAX);
+    map.rows_in(table, start, count).filter_map(move |row| {
+        let ahead = usize::from(row.address.get().checked_sub(start.get())?).checked_mul(2)?;
+        let end = ahead.checked_add(usize::from(row.words).checked_mul(2)?)?;
+        Some((row, value(row, data.get(ahead..end)?)))
+    })
+}
+
+/// Decodes words from `start` into fields.
+pub(crate) fn words(
+    out: &mut Decoded,
+    map: Option<&'static DeviceMap>,
+    table: Table,
+    start: Address,
+    mut data: Reader<'_>,
+) {
+    let mut at = start;
+    if let Some(map) = map {
+        let count = u16::try_from(data.left().checked_div(2).unwrap_or(0)).unwrap_or(u16::MAX);
+        for row in map.rows_in(table, start, count) {
+            let seen = at.get().saturating_sub(row.address.get());
+            let words = row.words.saturating_sub(seen);
+            let here = u16::try_from(data.left().checked_div(2).unwrap_or(0)).unwrap_or(u16::MAX);
+            let taken = words.min(here);
+            let Some(part) = data.sub(usize::from(taken).saturating_mul(2)) else {
+                break;
+            };
+            if taken == row.words {
+                whole(out, row, part);
+            } else {
+                fragment(out, row, at, part);
+            }
+            at = at.checked_add(taken).unwrap_or(at);
+        }
+    }
+    while let Some((word, place)) = data.u16() {
+        let value = Value::Number {
+            raw: i64::from(word),
+            scale: Scale::ONE,
+        };
+        out.push(None, Name::Register(table, at), value, place);
+        if map.is_some() {
+            out.problem(Problem::new(Finding::NotInMap, place));
+        }
+        at = at.checked_add(1).unwrap_or(at);
+    }
+    let (_, place) = data.take_rest();
+    if place.len > 0 {
+        out.push(None, Name::Def(&defs::UNKNOWN), Value::Raw, place);
+    }
+}
+
+/// A row of which some words are missing.
+fn fragment(out: &mut Decoded, row: &'static Row, at: Address, part: Reader<'_>) {
+    let place = part.here();
+    out.push(None, Name::Part(row, at), Value::Raw, place);
+    if row.kind != Kind::Reserved {
+        out.problem(Problem::new(Finding::Part { words: row.words }, place));
+    }
+}
+
+/// A row with all its words.
+fn whole(out: &mut Decoded, row: &'static Row, mut data: Reader<'_>) {
+    let place = data.here();
+    let judged = value(row, data.rest());
+    let id = out.push(None, Name::Row(row), judged.value, place);
+    if judged.quality != Quality::Good {
+        out.mark(id, judged.quality);
+    }
+    if let Some(finding) = judged.finding {
+        out.problem(Problem::new(finding, place));
+    }
+    match (row.kind, judged.value) {
+        (Kind::Bits, Value::Flags { raw, .. }) => bits(out, row, id, raw, data),
+        (Kind::Torque, _) => torque(out, row, id, &mut data),
+        (Kind::Curve, _) => curve(out, row, id, &mut data),
+        _ => {}
+    }
+}
+
+fn bits(out: &mut Decoded, row: &'static Row, parent: FieldId, raw: u32, data: Reader<'_>) {
+    let Some(set) = row.set else { return };
+    for member in set.members {
+        let on = raw.wrapping_shr(u32::from(member.value)) & 1 != 0;
+        // The lowest bit stands in the last byte.
+        let back = usize::from(member.value >> 3).saturating_add(1);
+        let mut byte = data;
+        let _before = byte.take(data.left().saturating_sub(back));
+        let Some((_, place)) = byte.u8() else {
+            continue;
+        };
+        let words = member.states.unwrap_or(ACTIVE);
+        out.push(
+            Some(parent),
+            Name::Bit(row, member),
+            Value::Bit { on, words },
+            place,
+        );
+    }
+}
+
+fn torque(out: &mut Decoded, row: &'static Row, parent: FieldId, data: &mut Reader<'_>) {
+    if let Some((unit, place)) = data.u8() {
+        let name = Name::Within(row, &defs::TORQUE_UNIT);
+        out.push(Some(parent), name, Value::Hex(u32::from(unit)), place);
+    }
+    let (_, place) = data.take_rest();
+    out.push(
+        Some(parent),
+        Name::Within(row, &defs::TORQUE_VALUE),
+        Value::Text,
+        place,
+    );
+}
+
+/// A torque curve: reading E34.
+fn curve(out: &mut Decoded, row: &'static Row, parent: FieldId, data: &mut Reader<'_>) {
+    let mut field = |def, value: Judged, place| {
+        let id = out.push(Some(parent), Name::Within(row, def), value.value, place);
+        out.mark(id, value.quality);
+        if let Some(finding) = value.finding {
+            out.problem(Problem::new(finding, place));
+        }
+    };
+    let Some((_, place)) = data.take(101) else {
+        return;
+    };
+    field(&defs::CURVE_SAMPLES, good(Value::Samples), place);
+    if let Some((&[day, month, year], place)) = data.take(3).map(array::<3>).and_then(|x| x) {
+        let judged = match (day, month, year) {
+            (0, 0, 0) => good(Value::Unavailable("no curve stored")),
+            _ => date(day, month, [0x20, year]),
+        };
+        field(&defs::CURVE_DATE, judged, place);
+    }
+    if let Some((&[second, minute, hour], place)) = data.take(3).map(array::<3>).and_then(|x| x) {
+        field(&defs::CURVE_TIME, time(hour, minute, second), place);
+    }
+    for def in [
+        &defs::CURVE_ELECTRONICS,
+        &defs::CURVE_TERMINALS,
+        &defs::CURVE_MOTOR,
+    ] {
+        if let Some((byte, place)) = data.u8() {
+            let raw = i64::from(i8::from_be_bytes([byte]));
+            field(
+                def,
+                good(Value::Number {
+                    raw,
+                    scale: Scale::ONE,
+                }),
+                place,
+            );
+        }
+    }
+    for def in [&defs::CURVE_VOLTAGE, &defs::CURVE_STROKE] {
+        if let Some((word, place)) = data.u16() {
+            field(
+                def,
+                good(Value::Number {
+                    raw: i64::from(word),
+                    scale: Scale::ONE,
+                }),
+                place,
+            );
+        }
+    }
+    let (_, place) = data.take_rest();
+    field(&defs::CURVE_RESERVED, good(Value::Raw), place);
+}
+
+/// Bytes of a known number as an array.
+fn array<const N: usize>(
+    (bytes, place): (&[u8], crate::place::Place),
+) -> Option<(&[u8; N], crate::place::Place)> {
+    bytes.first_chunk::<N>().map(|array| (array, place))
+}
+
+/// Number of addresses of a table that the device has, as far as its map goes.
+#[must_use]
+pub fn len(map: &'static DeviceMap, table: Table) -> u32 {
+    map.rows
+        .iter()
+        .filter(|r| r.table == table && r.access != Access::Absent)
+        .map(|r| u32::from(r.address.get()).saturating_add(u32::from(r.words)))
+        .fold(0, u32::max)
+}

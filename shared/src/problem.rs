@@ -1,0 +1,490 @@
+//! What is wrong with bytes, pinned to the bytes.
+//!
+//! A problem is small, `Copy` and comparable; its sentence is written when somebody reads it.
+
+use core::fmt;
+
+use crate::place::Place;
+
+/// How bad a problem is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing; nothing is wrong.
+    Note,
+    /// Against a rule, but the bytes can still be understood.
+    Warning,
+    /// The bytes can't be trusted or understood.
+    Error,
+}
+
+impl Severity {
+    /// `note`, `warning` or `error`.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// What recomputation proved about a wrong check value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Cause {
+    /// Nothing could be proved.
+    Unknown,
+    /// The two bytes of the CRC stand in the wrong order.
+    Swapped,
+    /// One bit changed on the way: byte (from the start of the frame) and bit number.
+    OneBit(u16, u8),
+    /// The frame is complete but for its check bytes.
+    Missing,
+}
+
+/// One finding. The numbers are the ones that its sentence needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Finding {
+    /// Bytes that belong to no frame.
+    Noise {
+        /// How many.
+        len: u32,
+    },
+    /// The CRC differs from the one computed.
+    Crc {
+        /// As received.
+        got: u16,
+        /// As computed.
+        want: u16,
+        /// What recomputation proved.
+        cause: Cause,
+    },
+    /// The LRC differs from the one computed.
+    Lrc {
+        /// As received.
+        got: u8,
+        /// As computed.
+        want: u8,
+    },
+    /// The frame ends before it is complete.
+    Truncated {
+        /// Bytes (ASCII: characters) that are missing at least.
+        missing: u16,
+    },
+    /// Bytes after the end of what the function defines.
+    Surplus {
+        /// How many.
+        len: u16,
+    },
+    /// A length or count field disagrees with the bytes that are there.
+    Count {
+        /// As transmitted.
+        got: u16,
+        /// What the other bytes say.
+        want: u16,
+    },
+    /// The quantity is outside the range of the function.
+    Quantity {
+        /// As transmitted.
+        got: u16,
+        /// Largest allowed.
+        max: u16,
+    },
+    /// Start address and quantity go beyond the last address.
+    PastEnd {
+        /// First address.
+        start: u16,
+        /// Quantity asked for.
+        count: u16,
+        /// Number of addresses in the table.
+        limit: u32,
+    },
+    /// The function code is not in the standard; its length is a guess held by the check value.
+    UnknownFunction {
+        /// The code.
+        code: u8,
+    },
+    /// A sub-function or MEI type is not in the standard.
+    UnknownSub {
+        /// The code.
+        code: u16,
+    },
+    /// The device does not implement this function; it answers exception 01.
+    NotImplemented {
+        /// The code.
+        code: u8,
+    },
+    /// No request for this response is known, so addresses are not known either.
+    NoRequest,
+    /// Request and response of this function look alike and nothing tells which it is.
+    EitherRole,
+    /// Read as a request although it would be a valid response too, or the other way round.
+    Ambiguous,
+    /// A read was sent to everybody; nobody may answer.
+    BroadcastRead,
+    /// Unit addresses 248 to 255 are reserved by the standard.
+    ReservedUnit {
+        /// The address.
+        unit: u8,
+    },
+    /// The response differs in amount from what the request asked for.
+    NotAsAsked {
+        /// Bytes received.
+        got: u16,
+        /// Bytes asked for.
+        want: u16,
+    },
+    /// An echoed field differs from the request.
+    EchoDiffers {
+        /// As received.
+        got: u16,
+        /// As sent.
+        want: u16,
+    },
+    /// The value of a single coil is neither `FF00` nor `0000`.
+    CoilValue {
+        /// As transmitted.
+        got: u16,
+    },
+    /// A value that the field can't have.
+    FieldValue {
+        /// As transmitted.
+        got: u32,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// Bits beyond the quantity are set.
+    PaddingBits,
+    /// The protocol identifier of a TCP frame is not 0.
+    Protocol {
+        /// As transmitted.
+        got: u16,
+    },
+    /// A character that is no hexadecimal digit.
+    BadDigit,
+    /// A line of Modbus ASCII without CR LF.
+    NoLineEnd,
+    /// The device answered with an exception.
+    Exception {
+        /// The exception code.
+        code: u8,
+    },
+    /// The value is outside its range.
+    Range {
+        /// Raw value.
+        got: i64,
+        /// Smallest allowed.
+        min: i32,
+        /// Largest allowed.
+        max: i32,
+    },
+    /// The code has no name.
+    NoName {
+        /// The code.
+        code: u32,
+    },
+    /// Digits of a date, time or text are not what they can be.
+    BadDigits {
+        /// What the bytes should have been: `a BCD date`.
+        what: &'static str,
+    },
+    /// The address is not in the device's map.
+    NotInMap,
+    /// Only some words of a value are in the frame.
+    Part {
+        /// Words of the whole value.
+        words: u16,
+    },
+    /// Bits are set that the manual calls not used.
+    UnusedBits {
+        /// Those bits.
+        bits: u32,
+    },
+    /// The byte count of a report is short by two, as the ICON3000 manual prints it.
+    ReportCount {
+        /// As transmitted.
+        got: u16,
+        /// Bytes that follow.
+        want: u16,
+    },
+    /// Pasted text: an odd number of hexadecimal digits.
+    OddDigits,
+    /// Pasted text: a single digit was taken as a byte.
+    LoneDigit,
+    /// Pasted text: characters that are no bytes.
+    NotHex {
+        /// How many words.
+        words: u32,
+    },
+    /// Nothing to decode.
+    Empty,
+}
+
+/// A finding with its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Problem {
+    /// What it is.
+    pub finding: Finding,
+    /// The bytes it is about, counted from the start of the frame (or noise).
+    pub place: Place,
+}
+
+impl Problem {
+    /// Pins a finding to bytes.
+    #[must_use]
+    pub const fn new(finding: Finding, place: Place) -> Self {
+        Self { finding, place }
+    }
+
+    /// How bad it is.
+    #[must_use]
+    pub const fn severity(&self) -> Severity {
+        use Finding as F;
+        match self.finding {
+            F::Noise { .. }
+            | F::Crc { .. }
+            | F::Lrc { .. }
+            | F::Truncated { .. }
+            | F::Surplus { .. }
+            | F::Count { .. }
+            | F::Protocol { .. }
+            | F::BadDigit
+            | F::NotAsAsked { .. }
+            | F::CoilValue { .. }
+            | F::OddDigits
+            | F::NotHex { .. }
+            | F::Empty => Severity::Error,
+            F::Quantity { .. }
+            | F::PastEnd { .. }
+            | F::UnknownSub { .. }
+            | F::UnknownFunction { .. }
+            | F::Ambiguous
+            | F::BroadcastRead
+            | F::ReservedUnit { .. }
+            | F::EchoDiffers { .. }
+            | F::FieldValue { .. }
+            | F::PaddingBits
+            | F::NoLineEnd
+            | F::Range { .. }
+            | F::NoName { .. }
+            | F::BadDigits { .. }
+            | F::LoneDigit => Severity::Warning,
+            F::NotImplemented { .. }
+            | F::NoRequest
+            | F::EitherRole
+            | F::Exception { .. }
+            | F::NotInMap
+            | F::Part { .. }
+            | F::UnusedBits { .. }
+            | F::ReportCount { .. } => Severity::Note,
+        }
+    }
+
+    /// The frozen identifier used in JSON: `crc-mismatch`.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        use Finding as F;
+        match self.finding {
+            F::Noise { .. } => "noise",
+            F::Crc {
+                cause: Cause::Missing,
+                ..
+            } => "crc-missing",
+            F::Crc { .. } => "crc-mismatch",
+            F::Lrc { .. } => "lrc-mismatch",
+            F::Truncated { .. } => "truncated",
+            F::Surplus { .. } => "surplus-bytes",
+            F::Count { .. } => "count-mismatch",
+            F::Quantity { .. } => "quantity-out-of-range",
+            F::PastEnd { .. } => "past-end",
+            F::UnknownFunction { .. } => "unknown-function",
+            F::UnknownSub { .. } => "unknown-sub-function",
+            F::NotImplemented { .. } => "not-implemented",
+            F::NoRequest => "request-unknown",
+            F::EitherRole => "role-unknown",
+            F::Ambiguous => "ambiguous",
+            F::BroadcastRead => "broadcast-read",
+            F::ReservedUnit { .. } => "reserved-unit",
+            F::NotAsAsked { .. } => "not-as-asked",
+            F::EchoDiffers { .. } => "echo-differs",
+            F::CoilValue { .. } => "coil-value",
+            F::FieldValue { .. } => "field-value",
+            F::PaddingBits => "padding-bits",
+            F::Protocol { .. } => "protocol-id",
+            F::BadDigit => "bad-digit",
+            F::NoLineEnd => "no-line-end",
+            F::Exception { .. } => "exception",
+            F::Range { .. } => "out-of-range",
+            F::NoName { .. } => "unknown-code",
+            F::BadDigits { .. } => "bad-digits",
+            F::NotInMap => "not-in-map",
+            F::Part { .. } => "part-of-value",
+            F::UnusedBits { .. } => "unused-bits",
+            F::ReportCount { .. } => "report-count",
+            F::OddDigits => "odd-hex-digits",
+            F::LoneDigit => "lone-hex-digit",
+            F::NotHex { .. } => "not-hex",
+            F::Empty => "empty",
+        }
+    }
+}
+
+impl fmt::Display for Problem {
+    /// What happened, and where it helps, what to do next.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        use Finding as F;
+        match self.finding {
+            F::Noise { len: 1 } => write!(
+                f,
+                "1 byte belongs to no frame: no function code, length and check value fit here."
+            ),
+            F::Noise { len } => write!(
+                f,
+                "{len} bytes belong to no frame: no function code, length and check value fit here."
+            ),
+            F::Crc { got, want, cause } => {
+                let ([g0, g1], [w0, w1]) = (got.to_le_bytes(), want.to_le_bytes());
+                if cause == Cause::Missing {
+                    return write!(
+                        f,
+                        "The two CRC bytes are missing; the frame is complete otherwise. They would be {w0:02X} {w1:02X}."
+                    );
+                }
+                write!(
+                    f,
+                    "The CRC is {g0:02X} {g1:02X}, computed over the bytes before it is {w0:02X} {w1:02X}."
+                )?;
+                match cause {
+                    Cause::Swapped => write!(
+                        f,
+                        " The two bytes stand in the wrong order: the low byte goes first."
+                    ),
+                    Cause::OneBit(byte, bit) => {
+                        write!(f, " One flipped bit explains it: byte {byte}, bit {bit}.")
+                    }
+                    Cause::Unknown | Cause::Missing => write!(
+                        f,
+                        " The frame was damaged on the way, or is not Modbus RTU; don't trust its values."
+                    ),
+                }
+            }
+            F::Lrc { got, want } => write!(
+                f,
+                "The LRC is {got:02X}, computed over the bytes before it is {want:02X}. The frame was damaged on the way; don't trust its values."
+            ),
+            F::Truncated { missing: 1 } => {
+                write!(f, "The frame ends too early: at least 1 byte is missing.")
+            }
+            F::Truncated { missing } => write!(
+                f,
+                "The frame ends too early: at least {missing} bytes are missing."
+            ),
+            F::Surplus { len } => write!(f, "{len} byte(s) more than this function defines."),
+            F::Count { got, want } => write!(
+                f,
+                "The count says {got}, the bytes that are there say {want}."
+            ),
+            F::Quantity { got, max } => write!(
+                f,
+                "A quantity of {got} is outside 1 to {max}; a device answers exception 03."
+            ),
+            F::PastEnd {
+                start,
+                count,
+                limit,
+            } => write!(
+                f,
+                "{count} from address {start} goes beyond the last address {}; the device answers exception 02.",
+                limit.saturating_sub(1)
+            ),
+            F::UnknownFunction { code } => write!(
+                f,
+                "Function code {code} (0x{code:02X}) is not in the Modbus standard. Where the frame ends is a guess that its check value supports; the data are shown raw."
+            ),
+            F::UnknownSub { code } => write!(
+                f,
+                "Sub-function {code} (0x{code:04X}) is not in the Modbus standard; its data are shown raw."
+            ),
+            F::NotImplemented { code } => write!(
+                f,
+                "This device does not implement function code {code}; it answers exception 01."
+            ),
+            F::NoRequest => write!(
+                f,
+                "The request is not known, and a response does not carry addresses. Paste the request before it to see what the values mean."
+            ),
+            F::EitherRole => write!(
+                f,
+                "Request and response of this function look the same; nothing tells which one this is."
+            ),
+            F::Ambiguous => write!(
+                f,
+                "These bytes are valid as a request and as a response; the more likely one is shown."
+            ),
+            F::BroadcastRead => write!(
+                f,
+                "A read to unit 0 (broadcast) gets no answer from anybody."
+            ),
+            F::ReservedUnit { unit } => write!(
+                f,
+                "Unit address {unit} is outside 1 to 247, the range of the standard."
+            ),
+            F::NotAsAsked { got, want } => write!(
+                f,
+                "The request asked for {want} data byte(s), the response carries {got}. It belongs to another request, or the device is at fault."
+            ),
+            F::EchoDiffers { got, want } => write!(
+                f,
+                "The response should repeat the request, which had {want} (0x{want:04X}); it has {got} (0x{got:04X})."
+            ),
+            F::CoilValue { got } => write!(
+                f,
+                "A coil is written with FF00 (on) or 0000 (off), not with {got:04X}; a device answers exception 03."
+            ),
+            F::FieldValue { got, allowed } => write!(
+                f,
+                "{got} (0x{got:X}) is not allowed here; the standard has {allowed}."
+            ),
+            F::PaddingBits => write!(f, "Bits beyond the quantity are set; they should be 0."),
+            F::Protocol { got } => write!(f, "The protocol identifier is {got}, Modbus TCP has 0."),
+            F::BadDigit => write!(f, "A character that is no hexadecimal digit."),
+            F::NoLineEnd => write!(f, "The line does not end with CR LF."),
+            F::Exception { code } => write!(
+                f,
+                "The device refused: exception {code:02X}, {}.",
+                crate::pdu::names::exception(code)
+                    .map_or("a code that the standard does not know", |e| e.1)
+            ),
+            F::Range { got, min, max } => {
+                write!(f, "The raw value {got} is outside {min} to {max}.")
+            }
+            F::NoName { code } => write!(f, "The manual has no text for the value {code}."),
+            F::BadDigits { what } => write!(f, "The bytes are not {what}."),
+            F::NotInMap => write!(f, "The device's map has nothing at this address."),
+            F::Part { words } => write!(f, "Only a part of a value of {words} registers was read."),
+            F::UnusedBits { bits } => write!(
+                f,
+                "Bits that the manual calls not used are set: 0x{bits:04X}."
+            ),
+            F::ReportCount { got, want } => write!(
+                f,
+                "The byte count says {got}, {want} bytes follow; this device counts without unit id and run indicator (reading E63)."
+            ),
+            F::OddDigits => write!(
+                f,
+                "An odd number of hexadecimal digits: the last one has no partner and is left out. Check whether a digit was lost when copying."
+            ),
+            F::LoneDigit => write!(
+                f,
+                "A single hexadecimal digit was taken as a byte with a leading 0."
+            ),
+            F::NotHex { words: 1 } => write!(f, "1 word is not hexadecimal and was skipped."),
+            F::NotHex { words } => write!(f, "{words} words are not hexadecimal and were skipped."),
+            F::Empty => write!(
+                f,
+                "There are no bytes here. Paste hexadecimal bytes such as 01 03 00 00 00 02 C4 0B, Modbus ASCII lines that begin with a colon, or drop a file."
+            ),
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Fields as people and programs read them: path, label, text, raw, source.
+
+use core::fmt::{self, Write};
+
+use crate::address::RegisterNumber;
+use crate::map::row::{Kind, Reading, Source, Trust};
+use crate::reader::Layout;
+use crate::tree::{Decoded, Field, FieldId, Name};
+use crate::value::Value;
+
+impl Name {
+    /// What people read.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match self {
+            Self::Def(def) | Self::Within(_, def) => def.label.to_owned(),
+            Self::Item(def, at) => format!("{} {at}", def.label),
+            Self::Register(table, address) => format!("{} {address}", table.label()),
+            Self::Row(row) => row.label.to_owned(),
+            Self::Part(row, _) => format!("{} (part)", row.label),
+            Self::Bit(_, member) => member.label.to_owned(),
+        }
+    }
+
+    /// Unit of the value, empty if it has none.
+    #[must_use]
+    pub const fn unit(&self) -> &'static str {
+        match self {
+            Self::Def(def) | Self::Item(def, _) | Self::Within(_, def) => def.unit,
+            Self::Row(row) => row.unit,
+            Self::Register(..) | Self::Part(..) | Self::Bit(..) => "",
+        }
+    }
+
+    /// Where it is described; `None` for a register that no map knows.
+    #[must_use]
+    pub const fn source(&self) -> Option<Source> {
+        match self {
+            Self::Def(def) | Self::Item(def, _) => Some(def.source),
+            Self::Row(row) | Self::Part(row, _) | Self::Bit(row, _) | Self::Within(row, _) => {
+                Some(row.source)
+            }
+            Self::Register(..) => None,
+        }
+    }
+
+    /// How far the description can be trusted.
+    #[must_use]
+    pub const fn trust(&self) -> Trust {
+        match self {
+            Self::Row(row) | Self::Part(row, _) | Self::Bit(row, _) | Self::Within(row, _) => {
+                row.trust
+            }
+            Self::Def(_) | Self::Item(..) => Trust::Manual,
+            Self::Register(..) => Trust::Inferred,
+        }
+    }
+
+    /// Why the description differs from the print.
+    #[must_use]
+    pub const fn reading(&self) -> Option<&'static Reading> {
+        match self {
+            Self::Row(row) | Self::Part(row, _) | Self::Bit(row, _) | Self::Within(row, _) => {
+                row.reading
+            }
+            Self::Def(_) | Self::Item(..) | Self::Register(..) => None,
+        }
+    }
+}
+
+impl Decoded {
+    /// The path of a field: `crc`, `sub_request[1].file`, `holding.3001.close_limit`.
+    ///
+    /// The path of a register begins with its table and address, whatever is around it.
+    #[must_use]
+    pub fn path(&self, id: FieldId) -> String {
+        let mut path = String::new();
+        self.write_path(id, &mut path);
+        path
+    }
+
+    fn write_path(&self, id: FieldId, path: &mut String) {
+        let Some(field) = self.field(id) else { return };
+        let below = |path: &mut String| {
+            if let Some(parent) = field.parent {
+                self.write_path(parent, path);
+                path.push('.');
+            }
+        };
+        // Writing to a String does not fail.
+        let _infallible = match field.name {
+            Name::Def(def) | Name::Within(_, def) => {
+                below(path);
+                path.write_str(def.key)
+            }
+            Name::Item(def, at) => {
+                below(path);
+                write!(path, "{}[{at}]", def.key)
+            }
+            Name::Register(table, address)
+            | Name::Part(&crate::map::row::Row { table, .. }, address) => {
+                write!(path, "{}.{address}", table.key())
+            }
+            Name::Row(row) => write!(path, "{}.{}", row.table.key(), row.address),
+            Name::Bit(_, member) => {
+                below(path);
+                path.write_str(member.key)
+            }
+        };
+    }
+
+    /// The bytes of a field in hexadecimal without blanks. In a Modbus ASCII frame these are the
+    /// characters themselves; the start and line end are given as bytes.
+    #[must_use]
+    pub fn raw(&self, field: &Field) -> String {
+        let bytes = self.bytes.get(field.place.range()).unwrap_or(&[]);
+        match self.layout {
+            Layout::HexPairs if bytes.iter().all(u8::is_ascii_hexdigit) && !bytes.is_empty() => {
+                bytes
+                    .iter()
+                    .map(|b| char::from(b.to_ascii_uppercase()))
+                    .collect()
+            }
+            _ => hex(bytes),
+        }
+    }
+
+    /// The payload bytes of a field, decoded from their characters in a Modbus ASCII frame.
+    #[must_use]
+    pub fn payload(&self, field: &Field) -> Vec<u8> {
+        let bytes = self.bytes.get(field.place.range()).unwrap_or(&[]);
+        match self.layout {
+            Layout::Plain => bytes.to_vec(),
+            Layout::HexPairs => bytes
+                .chunks_exact(2)
+                .filter_map(crate::frame::ascii::hex_pair)
+                .collect(),
+        }
+    }
+
+    /// The value of a field in words, with its unit: `24.0 %`.
+    #[must_use]
+    pub fn text(&self, field: &Field) -> String {
+        let text = self.bare_text(field);
+        let unit = field.name.unit();
+        match field.value {
+            Value::Number { .. } if !unit.is_empty() => format!("{text} {unit}"),
+            _ => text,
+        }
+    }
+
+    /// The value of a field in words, without its unit.
+    #[must_use]
+    pub fn bare_text(&self, field: &Field) -> String {
+        match field.value {
+            Value::Text => self.characters(field),
+            Value::Amount { unit } => {
+                let amount = self.payload(field);
+                let amount = text_of(amount.get(1..).unwrap_or(&[]));
+                match unit {
+                    Some(unit) => format!("{amount} {unit}"),
+                    None => format!("{amount} (unit unknown)"),
+                }
+            }
+            Value::Samples => {
+                let samples = self.payload(field);
+                let peak = samples.iter().max().copied().unwrap_or(0);
+                format!("{} samples, peak {peak}", samples.len())
+            }
+            Value::Raw => match self.payload(field) {
+                bytes if bytes.is_empty() => self.raw(field),
+                bytes => Spaced(&bytes).to_string(),
+            },
+            Value::Group => String::new(),
+            value => value.to_string(),
+        }
+    }
+
+    fn characters(&self, field: &Field) -> String {
+        let bytes = self.payload(field);
+        if let Name::Row(row) = field.name
+            && row.kind == Kind::Ascii7
+            && let Some((last, body)) = bytes.split_last()
+            && body.last().is_some_and(|b| !matches!(b, 0 | b' '))
+        {
+            // Reading E18: the seventh character is in the high byte, the low byte is padding.
+            let _padding = last;
+            return text_of(body);
+        }
+        text_of(&bytes)
+    }
+}
+
+/// Characters without the padding at both ends; what is not printable becomes a middle dot.
+fn text_of(bytes: &[u8]) -> String {
+    let text: String = bytes
+        .iter()
+        .map(|b| match b {
+            0 => ' ',
+            0x20..=0x7E | 0xA0.. => char::from(*b),
+            _ => '·',
+        })
+        .collect();
+    text.trim().to_owned()
+}
+
+impl fmt::Display for Value {
+    /// The value in words; text, samples and raw bytes need their frame, see [`Decoded::text`].
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Group | Self::Text | Self::Samples | Self::Raw => Ok(()),
+            Self::Amount { unit } => f.write_str(unit.unwrap_or("unit unknown")),
+            Self::Number { raw, scale } => scale.apply(raw).fmt(f),
+            Self::Hex(raw) if raw <= 0xFF => write!(f, "0x{raw:02X}"),
+            Self::Hex(raw) if raw <= 0xFFFF => write!(f, "0x{raw:04X}"),
+            Self::Hex(raw) => write!(f, "0x{raw:08X}"),
+            Self::Address(table, address) => {
+                write!(f, "{address} ({})", RegisterNumber::of(table, address))
+            }
+            Self::Code { raw, set } => match set.get(raw) {
+                Some(member) => write!(f, "{} ({raw})", member.label),
+                None => write!(f, "unknown code ({raw})"),
+            },
+            Self::Named(raw, Some(name)) => write!(f, "{name} ({raw})"),
+            Self::Named(raw, None) => write!(f, "unknown ({raw})"),
+            Self::Flags { raw, set } => {
+                let mut none = true;
+                for member in set.members {
+                    if raw.wrapping_shr(u32::from(member.value)) & 1 != 0 {
+                        f.write_str(if none { "" } else { ", " })?;
+                        f.write_str(member.label)?;
+                        none = false;
+                    }
+                }
+                if none { f.write_str("none") } else { Ok(()) }
+            }
+            Self::Bit {
+                on,
+                words: (no, yes),
+            } => f.write_str(if on { yes } else { no }),
+            Self::Date { year, month, day } => write!(f, "{year:04}-{month:02}-{day:02}"),
+            Self::Time {
+                hour,
+                minute,
+                second,
+            } => write!(f, "{hour:02}:{minute:02}:{second:02}"),
+            Self::Unavailable(why) => write!(f, "not available ({why})"),
+        }
+    }
+}
+
+/// Bytes in hexadecimal without blanks.
+#[must_use]
+pub fn hex(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+    let mut text = String::with_capacity(bytes.len().saturating_mul(2));
+    for byte in bytes {
+        for nibble in [byte >> 4, byte & 0x0F] {
+            text.push(char::from(
+                DIGITS.get(usize::from(nibble)).copied().unwrap_or(b'?'),
+            ));
+        }
+    }
+    text
+}
+
+/// Bytes in hexadecimal with a blank between each.
+#[derive(Clone, Copy, Debug)]
+pub struct Spaced<'a>(pub &'a [u8]);
+
+impl fmt::Display for Spaced<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, byte) in self.0.iter().enumerate() {
+            if at > 0 {
+                f.write_str(" ")?;
+            }
+            write!(f, "{byte:02X}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,100 @@
+//! Pairing of requests and responses. A register response carries no addresses, so values exist
+//! per transaction only.
+
+use crate::frame::{Found, Framing, Role};
+
+/// A request that waits for its answer.
+#[derive(Clone, Copy, Debug)]
+struct Open {
+    transaction: u16,
+    unit: u8,
+    function: u8,
+    index: u32,
+}
+
+/// How many requests may be under way at once on Modbus TCP. On a serial line there is one.
+const DEPTH: usize = 16;
+
+/// The requests that wait for an answer.
+///
+/// Serial: one; a new request means that the one before was not answered. TCP: several, told
+/// apart by their transaction identifier.
+#[derive(Clone, Debug)]
+pub struct Pairing {
+    open: [Option<Open>; DEPTH],
+    next: usize,
+}
+
+impl Pairing {
+    pub(crate) const fn new() -> Self {
+        Self {
+            open: [None; DEPTH],
+            next: 0,
+        }
+    }
+
+    /// True if an answer to this function of this unit is due.
+    #[inline]
+    pub(crate) fn expects(&self, transaction: u16, unit: u8, function: u8) -> bool {
+        self.open
+            .iter()
+            .flatten()
+            .any(|o| o.matches(transaction, unit, function))
+    }
+
+    /// On a serial line: true if an answer to this function of this unit is due.
+    #[inline]
+    pub(crate) fn expects_serial(&self, unit: u8, function: u8) -> bool {
+        self.open
+            .first()
+            .and_then(Option::as_ref)
+            .is_some_and(|o| o.matches(0, unit, function))
+    }
+
+    /// Notes a request, or finds the request of a response.
+    #[inline]
+    pub(crate) fn settle(&mut self, found: &Found, framing: Framing, index: u32) -> Option<u32> {
+        match found.role {
+            // Nobody answers a broadcast.
+            Role::Request if found.unit == 0 && framing != Framing::Tcp => {
+                self.clear();
+                None
+            }
+            Role::Request => {
+                let open = Open {
+                    transaction: found.transaction,
+                    unit: found.unit,
+                    function: found.function,
+                    index,
+                };
+                let at = if framing == Framing::Tcp {
+                    self.next
+                } else {
+                    0
+                };
+                if let Some(slot) = self.open.get_mut(at) {
+                    *slot = Some(open);
+                }
+                self.next = at.wrapping_add(1).checked_rem(DEPTH).unwrap_or(0);
+                None
+            }
+            Role::Response | Role::Exception => {
+                let slot = self.open.iter_mut().find(|o| {
+                    o.is_some_and(|o| o.matches(found.transaction, found.unit, found.function))
+                })?;
+                slot.take().map(|o| o.index)
+            }
+            Role::Unknown | Role::Noise => None,
+        }
+    }
+
+    fn clear(&mut self) {
+        self.open = [None; DEPTH];
+    }
+}
+
+impl Open {
+    const fn matches(&self, transaction: u16, unit: u8, function: u8) -> bool {
+        self.transaction == transaction && self.unit == unit && self.function == function & 0x7F
+    }
+}

@@ -1,0 +1,90 @@
+//! `cargo xtask test`: everything that must hold before a change goes in.
+//!
+//! # Which test runs where
+//!
+//! | what | where it lies | how it runs |
+//! |---|---|---|
+//! | unit tests | beside the code | natively |
+//! | golden files, properties, the bridge | `tests/tests/*.rs` | natively |
+//! | the page and `shared` in a browser | `frontend/tests/wasm_*.rs`, `tests/tests/wasm_*.rs` | headless, as wasm |
+//! | other implementations as peers | `tests/tests/peers.rs`, feature `peers` | natively |
+//! | end to end | `tests/tests/e2e.rs`, feature `browser` | the built binary and a browser |
+//!
+//! A file `wasm_*.rs` begins with `#![cfg(target_arch = "wasm32")]`, so that it is empty natively.
+
+pub mod browser;
+mod peers;
+mod report;
+
+use crate::toolchain::{self, WASM};
+use crate::{Result, shell, size, tidy, web};
+use report::Report;
+use std::process::Command;
+
+/// The packages whose native tests run together; always this selection, so that cargo unifies
+/// features once and compiles each dependency once. xtask shares nothing with them.
+const NATIVE: [&str; 3] = ["--workspace", "--exclude", "xtask"];
+
+/// Runs every step, stops at the first that fails, and prints the sum as the last line.
+pub fn test() -> Result {
+    let mut report = Report::new();
+    let result = steps(&mut report);
+    report.finish(result.as_ref().err());
+    // Nothing may follow the sum, so the error is told by the report.
+    result.map_err(|_| "".into())
+}
+
+fn steps(report: &mut Report) -> Result {
+    report.step("tidy", |_| {
+        toolchain::ensure_checkers()?;
+        tidy::tidy()
+    })?;
+    report.step("clippy", |_| {
+        toolchain::ensure_wasm_target()?;
+        clippy(&["--workspace", "--all-targets"])?;
+        clippy(&[
+            "-p", "shared", "-p", "frontend", "-p", "tests", "--lib", "--bins", "--test", "wasm_*",
+            "--target", WASM,
+        ])
+    })?;
+    report.step("page", |_| size::size(&web::web()?))?;
+    report.step("native tests", |log| {
+        log.run_tests("native", &mut native("test", &["--no-fail-fast"]))?;
+        log.run_tests("xtask", &mut shell::cargo(["test", "-p", "xtask"]))
+    })?;
+    let browser = report.step("browser", |_| browser::ensure())?;
+    report.step("tests in the browser", |log| {
+        let packages = [
+            "test", "-p", "frontend", "-p", "tests", "--test", "wasm_*", "--target", WASM,
+        ];
+        let mut command = shell::cargo(packages);
+        log.run_tests("wasm", browser.environment(command.arg("--no-fail-fast")))
+    })?;
+    let peers = report.step("peers", |_| peers::ensure())?;
+    report.step("tests against peers", |log| {
+        let mut command = native("test", &["--features", "tests/peers", "--test", "peers"]);
+        log.run_tests("peers", peers.environment(&mut command))
+    })?;
+    report.step("end to end", |log| {
+        shell::run(&mut native("build", &["--bin", "valvescope"]))?;
+        let mut command = native("test", &["--features", "tests/browser", "--test", "e2e"]);
+        command.env(
+            "VALVESCOPE_BIN",
+            shell::target_dir().join("debug/valvescope"),
+        );
+        log.run_tests("e2e", browser.environment(&mut command))
+    })
+}
+
+/// A cargo verb over the packages tested natively.
+fn native(verb: &str, args: &[&str]) -> Command {
+    let mut command = shell::cargo([verb]);
+    command.args(NATIVE).args(args);
+    command
+}
+
+/// Clippy, where every warning counts.
+fn clippy(args: &[&str]) -> Result {
+    let mut command = shell::cargo(["clippy"]);
+    shell::run(command.args(args).args(["--", "-D", "warnings"]))
+}

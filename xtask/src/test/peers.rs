@@ -1,0 +1,68 @@
+//! Independent implementations that the tests talk to: mbpoll (libmodbus) and pymodbus.
+
+use crate::{Result, apt, shell};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The version of pymodbus that the tests are written for.
+const PYMODBUS: &str = "3.16.1";
+
+/// The peers of this machine.
+pub struct Peers {
+    python: PathBuf,
+}
+
+impl Peers {
+    /// Tells a command where they are: `PEERS_PYTHON` is a Python that can import pymodbus.
+    /// mbpoll is in the search path.
+    pub fn environment<'a>(&self, command: &'a mut Command) -> &'a mut Command {
+        command
+            .env("PEERS_PYTHON", &self.python)
+            .env("PATH", shell::search_path())
+    }
+}
+
+/// Finds both peers, and installs what is missing where that is allowed.
+pub fn ensure() -> Result<Peers> {
+    if shell::find(&["mbpoll"], &shell::search_path()).is_none() {
+        apt::install(&["mbpoll"])?;
+    }
+    let folder = shell::target_dir().join("peers");
+    let python = folder.join("bin/python");
+    if !has_pymodbus(&python) {
+        make_venv(&folder)?;
+        let pip = [
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--disable-pip-version-check",
+        ];
+        let mut install = shell::program(&python, pip);
+        shell::run(install.arg(format!("pymodbus[serial]=={PYMODBUS}"))).map_err(|error| {
+            format!("{error}\n  The tests need pymodbus {PYMODBUS}; see why pip cannot get it.")
+        })?;
+    }
+    println!("mbpoll, and pymodbus {PYMODBUS} in {}", folder.display());
+    Ok(Peers { python })
+}
+
+/// True when this Python has the right version.
+fn has_pymodbus(python: &Path) -> bool {
+    let script = format!("import pymodbus, serial; assert pymodbus.__version__ == '{PYMODBUS}'");
+    shell::succeeds(&mut shell::program(python, ["-c", &script]))
+}
+
+/// Makes a virtual environment; Debian keeps the module for that in a package of its own.
+fn make_venv(folder: &Path) -> Result {
+    let command = || {
+        let mut command = shell::program("python3", ["-m", "venv", "--clear"]);
+        command.arg(folder);
+        command
+    };
+    if shell::succeeds(&mut command()) {
+        return Ok(());
+    }
+    apt::install(&["python3", "python3-venv"])?;
+    shell::run(&mut command())
+}

@@ -1,0 +1,136 @@
+//! `cargo xtask web`: the page, from Rust to `static/dist`.
+//!
+//! # The contract for `static/`
+//!
+//! - Everything in `static/` except `dist/` is copied to `static/dist/` under the same name, so a
+//!   link in `index.html` is the same in the source and in the result.
+//! - `index.html` holds `<script type="module" src="boot.js"></script>` once. This module writes
+//!   `boot.js`, `valvescope.js` and `valvescope_bg.wasm`. Other scripts, and inline scripts, are
+//!   refused: the server's policy forbids them.
+//! - Attributes stand in double quotes and links are relative: `<link rel="stylesheet"
+//!   href="css/app.css">`, `<link rel="icon" href="icons/favicon.svg">`. A style sheet may name
+//!   files by `url(…)`, but not `@import` another sheet.
+//! - Names are fixed, not hashed: the server answers with an `ETag`, so a changed file is noticed
+//!   and an unchanged one is not sent again. A `name.br` stands beside each file it makes smaller.
+//!
+//! # The single file
+//!
+//! `static/dist/valvescope.html` is the same page with style sheets, icon, program and samples
+//! inside, for a double click on a laptop where nothing may be installed. Files of
+//! `static/samples` are in `<script type="application/json" id="embedded-files">` there, as an
+//! object from name (`samples/a.hex`) to base64: a page that wants one looks there before it
+//! fetches.
+
+mod compress;
+mod files;
+mod html;
+mod single;
+
+pub use compress::br_name;
+
+use crate::toolchain::{self, WASM};
+use crate::{Result, shell};
+use std::path::{Path, PathBuf};
+use wasm_bindgen_cli_support::Bindgen;
+
+/// What starts the page; its own file, because the server's policy allows no inline script.
+const BOOT: &str = "import init from './valvescope.js';\ninit();\n";
+
+/// The two files that a browser must load before it can show anything.
+pub struct Bundle {
+    /// The program.
+    pub wasm: PathBuf,
+    /// Its glue.
+    pub js: PathBuf,
+}
+
+/// Builds the page into `static/dist`.
+pub fn web() -> Result<Bundle> {
+    toolchain::ensure_wasm_target()?;
+    let source = shell::root().join("static");
+    let dist = source.join("dist");
+    let program = compile()?;
+
+    let index = std::fs::read_to_string(source.join("index.html"))
+        .map_err(|error| format!("static/index.html: {error}"))?;
+    html::check(&index)?;
+
+    let mut output = files::Folder::open(&dist)?;
+    output.copy_tree(&source, &["dist"])?;
+    let modules = Glue::generate(&program, Mode::Modules)?;
+    output.write("boot.js", BOOT.as_bytes())?;
+    let js = output.write("valvescope.js", modules.js.as_bytes())?;
+    let wasm = output.write("valvescope_bg.wasm", &modules.wasm)?;
+    let single = single::page(&source, &index, &Glue::generate(&program, Mode::Classic)?)?;
+    output.write("valvescope.html", single.as_bytes())?;
+    compress::all(&mut output)?;
+    output.remove_the_rest()?;
+    println!(
+        "the page is in {}",
+        dist.strip_prefix(shell::root()).unwrap_or(&dist).display()
+    );
+    Ok(Bundle { wasm, js })
+}
+
+/// Compiles the page, and returns the raw wasm file.
+fn compile() -> Result<PathBuf> {
+    let args = [
+        "build",
+        "-p",
+        "frontend",
+        "--bin",
+        "frontend",
+        "--profile",
+        "web",
+        "--target",
+        WASM,
+    ];
+    shell::run(&mut shell::cargo(args))?;
+    Ok(shell::target_dir().join(WASM).join("web/frontend.wasm"))
+}
+
+/// How the glue is loaded.
+#[derive(Clone, Copy)]
+enum Mode {
+    /// As a module, by `boot.js`.
+    Modules,
+    /// As a classic script inside the single file, where modules cannot be imported.
+    Classic,
+}
+
+/// The program with the JavaScript that binds it to the browser.
+struct Glue {
+    js: String,
+    wasm: Vec<u8>,
+}
+
+impl Glue {
+    /// Runs wasm-bindgen, whose version is locked to that of the library.
+    fn generate(program: &Path, mode: Mode) -> Result<Self> {
+        let mut bindgen = Bindgen::new();
+        bindgen
+            .input_path(program)
+            .out_name("valvescope")
+            .typescript(false)
+            .omit_default_module_path(false);
+        match mode {
+            Mode::Modules => bindgen.web(true),
+            Mode::Classic => bindgen.no_modules(true),
+        }
+        .map_err(|error| format!("wasm-bindgen: {error:?}"))?;
+        let mut output = bindgen
+            .generate_output()
+            .map_err(|error| format!("wasm-bindgen: {error:?}"))?;
+        if output.snippets().values().any(|files| !files.is_empty())
+            || !output.local_modules().is_empty()
+        {
+            return Err("a dependency of the page brings a JavaScript snippet; \
+                 the single file cannot hold it, so find another way"
+                .into());
+        }
+        Ok(Self {
+            js: output.js().to_owned(),
+            wasm: output.wasm_mut().emit_wasm(),
+        })
+    }
+}
