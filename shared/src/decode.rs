@@ -179,9 +179,10 @@ fn ascii(
         .as_ref()
         .and_then(|p| p.bytes().split_last())
         .and_then(|(_, b)| b.get(1..));
+    // Without sound digits up to the end there is no telling which of them are the LRC.
     let (sent, body) = match payload.bytes().split_last() {
-        Some((sent, body)) => (Some(*sent), body),
-        None => (None, payload.bytes()),
+        Some((sent, body)) if payload.sound => (Some(*sent), body),
+        _ => (None, payload.bytes()),
     };
     let mut reader = Reader::new(body, 0, Layout::HexPairs);
     unit(frame, &mut reader, out, 247);
@@ -205,12 +206,20 @@ fn ascii(
             out.problem(Problem::new(Finding::Lrc { got, want }, place));
         }
     }
-    let sound_end = usize::from(place.end()).min(bytes.len());
+    let read = Layout::HexPairs.place(payload.bytes().len(), 0).start;
     let digits_end = payload.digits.saturating_add(1);
-    if sound_end < digits_end {
-        let bad = Place::new(sound_end, digits_end.saturating_sub(sound_end));
+    if usize::from(read) < digits_end {
+        let bad = Place::new(
+            usize::from(read),
+            digits_end.saturating_sub(usize::from(read)),
+        );
         out.push(None, Name::Def(&defs::UNKNOWN), Value::Raw, bad);
-        out.problem(Problem::new(Finding::BadDigit, bad));
+        let finding = if bad.len == 1 {
+            Finding::OddDigits
+        } else {
+            Finding::BadDigit
+        };
+        out.problem(Problem::new(finding, bad));
     }
     let end = Place::new(digits_end, bytes.len().saturating_sub(digits_end));
     if end.len > 0 {
@@ -309,8 +318,9 @@ fn pdu(
             frame.role
         },
         unit: frame.unit,
+        damaged: frame.marks.is_damaged(),
         asked: asked.map(Asked::new),
         out,
     };
-    pdu.decode(frame.marks.is_damaged());
+    pdu.decode();
 }

@@ -265,12 +265,12 @@ impl Problem {
             | F::EchoDiffers { .. }
             | F::FieldValue { .. }
             | F::PaddingBits
-            | F::NoLineEnd
             | F::Range { .. }
             | F::NoName { .. }
             | F::BadDigits { .. }
             | F::LoneDigit => Severity::Warning,
             F::NotImplemented { .. }
+            | F::NoLineEnd
             | F::NoRequest
             | F::EitherRole
             | F::Exception { .. }
@@ -449,7 +449,10 @@ impl fmt::Display for Problem {
             F::PaddingBits => write!(f, "Bits beyond the quantity are set; they should be 0."),
             F::Protocol { got } => write!(f, "The protocol identifier is {got}, Modbus TCP has 0."),
             F::BadDigit => write!(f, "A character that is no hexadecimal digit."),
-            F::NoLineEnd => write!(f, "The line does not end with CR LF."),
+            F::NoLineEnd => write!(
+                f,
+                "The line does not end with CR LF, as it must on the wire; copied text often loses it."
+            ),
             F::Exception { code } => write!(
                 f,
                 "The device refused: exception {code:02X}, {}.",

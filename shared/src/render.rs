@@ -172,6 +172,10 @@ impl Decoded {
                 bytes => Spaced(&bytes).to_string(),
             },
             Value::Group => String::new(),
+            Value::Hex(raw) => {
+                let width = self.payload(field).len().saturating_mul(2);
+                format!("0x{raw:0width$X}")
+            }
             value => value.to_string(),
         }
     }

@@ -10,13 +10,14 @@
 //! | `CHROMIUM` | the browser itself | what the driver finds |
 //! | `PEERS_PYTHON` | a Python with pymodbus | `target/peers/bin/python` |
 
-#![cfg(not(target_arch = "wasm32"))]
-
-#[cfg(feature = "browser")]
+#[cfg(all(feature = "browser", not(target_arch = "wasm32")))]
 pub mod browser;
-#[cfg(feature = "peers")]
+pub mod golden;
+#[cfg(all(feature = "peers", not(target_arch = "wasm32")))]
 pub mod peers;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod process;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod server;
 
 use std::path::{Path, PathBuf};

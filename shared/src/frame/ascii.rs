@@ -111,7 +111,8 @@ pub(super) fn next(view: &View<'_>, pairing: &Pairing) -> Found {
     if !holds {
         marks = marks.with(Marks::BAD_CHECK);
         // Without its line end, a line that fails its check was cut.
-        if !proper || matches!(request, Length::Exact(n) if n > pdu.len()) {
+        let short = matches!(request, Length::Exact(n) if n > pdu.len());
+        if payload.sound && (!proper || short) {
             marks = marks.with(Marks::TRUNCATED);
         }
     } else if request != exact && response != exact {
@@ -139,6 +140,8 @@ pub(super) fn next(view: &View<'_>, pairing: &Pairing) -> Found {
             (false, true) => answer,
             _ if function >= 0x80 => Role::Exception,
             _ if due => answer,
+            // A damaged line: fields of requests stand at fixed places.
+            _ if marks.is_damaged() && length::is_known(function) => Role::Request,
             _ => Role::Unknown,
         },
     };

@@ -92,10 +92,14 @@ fn good(view: &View<'_>, pairing: &Pairing) -> Option<Found> {
         match best {
             None => best = Some(candidate),
             Some(b) if proved => {
-                both = b.role != candidate.role && !due && !echoes(function);
-                if due || (both && !plausible_request(view.bytes)) {
+                let differ = b.role != candidate.role && !echoes(function);
+                let (request, response) = (
+                    plausible_request(view.bytes),
+                    plausible_response(view.bytes),
+                );
+                both = differ && !due && request && response;
+                if response && (due || (differ && !request)) {
                     best = Some(candidate);
-                    both = false;
                 }
             }
             // Two lengths with a valid CRC: the one after which the stream goes on well, else the
@@ -139,11 +143,23 @@ fn is_known(bytes: &[u8], function: u8) -> bool {
         || (function > 0x80 && bytes.get(2).is_some_and(|code| (1..=0x0B).contains(code)))
 }
 
-/// Reads the bytes as a request of FC 01 to 04 and asks whether its quantity is allowed.
+/// Reads the bytes as a request: is its quantity allowed, are its references what they must be?
 fn plausible_request(bytes: &[u8]) -> bool {
     match bytes.get(1..6) {
         Some(&[1 | 2, _, _, high, low]) => (1..=2000).contains(&u16::from_be_bytes([high, low])),
         Some(&[3 | 4, _, _, high, low]) => (1..=125).contains(&u16::from_be_bytes([high, low])),
+        // Groups of seven bytes that begin with reference type 6.
+        Some(&[20, count, 6, ..]) => count % 7 == 0,
+        Some(&[20, ..]) => false,
+        _ => true,
+    }
+}
+
+/// Reads the bytes as a response: may it look like this?
+fn plausible_response(bytes: &[u8]) -> bool {
+    match bytes.get(1..5) {
+        // A group of length, reference type 6 and words.
+        Some(&[20, _, length, reference]) => length % 2 == 1 && reference == 6,
         _ => true,
     }
 }

@@ -45,7 +45,8 @@ enum Fit {
 
 fn fit(bytes: &[u8], header: &Header) -> Fit {
     let len = usize::from(header.length).saturating_sub(1);
-    let Some(pdu) = bytes.get(HEADER..HEADER.saturating_add(len)) else {
+    let end = HEADER.saturating_add(len).min(bytes.len());
+    let Some(pdu) = bytes.get(HEADER..end) else {
         return Fit::None;
     };
     let (request, response) = (length::request(pdu), length::response(pdu));
@@ -86,7 +87,7 @@ pub(super) fn next(view: &View<'_>, pairing: &Pairing) -> Found {
                 return found(view, pairing, &h, len, fit, Marks::MALFORMED);
             }
         } else if view.at_end && search(view) == view.bytes.len() {
-            let fit = Fit::None;
+            let fit = fit(view.bytes, &h);
             return found(view, pairing, &h, view.bytes.len(), fit, Marks::TRUNCATED);
         }
     } else if view.at_end && view.aligned && cut_header(view.bytes) {
@@ -134,6 +135,7 @@ fn starts_good(bytes: &[u8]) -> bool {
         h.protocol == 0
             && (MIN..=MAX).contains(&h.length)
             && length::is_known(h.function & 0x7F)
+            && bytes.len() >= BEFORE.saturating_add(usize::from(h.length))
             && !matches!(fit(bytes, &h), Fit::None | Fit::Open)
     })
 }

@@ -1,32 +1,121 @@
-//! Stub until the build script is there.
+//! Register maps: what each address of a device means.
+//!
+//! The facts are data (`shared/data`); the build turns them into the static tables of this
+//! module and stops at the first map that breaks a rule. Nothing is parsed at run time.
+//!
+//! **Invariant:** the rows of a map cover each of its tables from address 0 without holes or
+//! overlaps, so a lookup below the end of a table always finds a row.
+
 pub mod decode;
+pub mod export;
 pub mod plan;
 pub mod row;
+pub mod search;
+#[cfg(test)]
+mod tests;
+
 use crate::address::{Address, Table};
-use row::{DeviceMap, Model, Row};
-static EMPTY: DeviceMap = DeviceMap {
-    model: Model::Icon3000v2,
-    name: "stub",
-    rows: &[],
+use crate::scale::Scale;
+use row::{
+    Access, DeviceMap, Kind, Level, Member, Model, Reading, Row, Set, Settled, Source, Trust,
 };
+
+include!(concat!(env!("OUT_DIR"), "/maps.rs"));
+
 impl Model {
-    /// stub
+    /// All models, oldest first.
+    pub const ALL: [Self; 3] = [Self::Icon2000v4, Self::Icon3000, Self::Icon3000v2];
+
+    /// The model with this [`key`](Self::key).
+    #[must_use]
+    pub fn from_key(key: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|model| model.key() == key)
+    }
+
+    /// Its map.
+    #[must_use]
     pub fn map(self) -> &'static DeviceMap {
-        &EMPTY
+        match self {
+            Self::Icon2000v4 => &ICON2000V4,
+            Self::Icon3000 => &ICON3000,
+            Self::Icon3000v2 => &ICON3000V2,
+        }
     }
 }
-impl DeviceMap {
-    /// stub
-    pub fn row_at(&self, _: Table, _: Address) -> Option<&'static Row> {
-        None
+
+impl Row {
+    /// The address after its last word.
+    ///
+    /// A `u32`, because a row may end with address 65535.
+    #[must_use]
+    pub fn end(&self) -> u32 {
+        u32::from(self.address.get()).saturating_add(u32::from(self.words))
     }
-    /// stub
+
+    /// True if one of its words has this address.
+    #[must_use]
+    pub fn contains(&self, address: Address) -> bool {
+        self.address <= address && u32::from(address.get()) < self.end()
+    }
+}
+
+impl DeviceMap {
+    /// The row that holds an address, `None` beyond the end of the table.
+    ///
+    /// One binary search over all rows: this runs for every transaction of a capture.
+    #[must_use]
+    pub fn row_at(&self, table: Table, address: Address) -> Option<&'static Row> {
+        let after = self
+            .rows
+            .partition_point(|row| (row.table, row.address) <= (table, address));
+        let row = *self.rows.get(after.checked_sub(1)?)?;
+        (row.table == table && row.contains(address)).then_some(row)
+    }
+
+    /// All rows of a table, by address.
+    #[must_use]
+    pub fn rows_of(&self, table: Table) -> &'static [&'static Row] {
+        let start = self.rows.partition_point(|row| row.table < table);
+        let rows = self.rows.get(start..).unwrap_or_default();
+        let end = rows.partition_point(|row| row.table == table);
+        rows.get(..end).unwrap_or_default()
+    }
+
+    /// The rows that have a word in `start .. start + count`, by address.
+    ///
+    /// The first and the last may reach beyond the range: a request can begin or end in the
+    /// middle of a value.
     pub fn rows_in(
         &self,
-        _: Table,
-        _: Address,
-        _: u16,
+        table: Table,
+        start: Address,
+        count: u16,
     ) -> impl Iterator<Item = &'static Row> + use<> {
-        [].into_iter()
+        let first = u32::from(start.get());
+        let end = first.saturating_add(u32::from(count));
+        let before = self
+            .rows
+            .partition_point(|row| row.table < table || (row.table == table && row.end() <= first));
+        self.rows
+            .get(before..)
+            .unwrap_or_default()
+            .iter()
+            .copied()
+            .take_while(move |row| row.table == table && u32::from(row.address.get()) < end)
+    }
+
+    /// The row of a table with this key.
+    #[must_use]
+    pub fn by_key(&self, table: Table, key: &str) -> Option<&'static Row> {
+        self.rows_of(table)
+            .iter()
+            .copied()
+            .find(|row| row.key == key)
+    }
+
+    /// The reading with this id, for the ids that notes mention.
+    #[must_use]
+    pub fn reading(&self, id: &str) -> Option<&'static Reading> {
+        self.readings.iter().find(|reading| reading.id == id)
     }
 }

@@ -289,4 +289,6 @@ pub struct DeviceMap {
     pub name: &'static str,
     /// Its rows by table and address; they cover their tables without holes or overlaps.
     pub rows: &'static [&'static Row],
+    /// All readings of its manual, by id; rows name one, notes may mention others.
+    pub readings: &'static [Reading],
 }

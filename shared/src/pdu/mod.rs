@@ -32,13 +32,15 @@ pub(crate) struct Pdu<'a, 'b> {
     pub device: Device,
     pub role: Role,
     pub unit: u8,
+    /// The frame is damaged: counts that disagree say nothing new.
+    pub damaged: bool,
     /// What the request of this response asked for.
     pub asked: Option<Asked<'a>>,
 }
 
 impl<'a> Pdu<'a, '_> {
     /// Decodes the PDU; what is left of it becomes an "unknown" field.
-    pub(crate) fn decode(&mut self, damaged: bool) {
+    pub(crate) fn decode(&mut self) {
         let complete = self.body();
         if self.reader.is_empty() {
             return;
@@ -46,7 +48,7 @@ impl<'a> Pdu<'a, '_> {
         let (bytes, place) = self.reader.take_rest();
         self.out
             .push(None, Name::Def(&defs::UNKNOWN), Value::Raw, place);
-        if complete.is_some() && !damaged {
+        if complete.is_some() && !self.damaged {
             let len = u16::try_from(bytes.len()).unwrap_or(u16::MAX);
             self.find(Finding::Surplus { len }, place);
         }
@@ -165,7 +167,7 @@ impl<'a> Pdu<'a, '_> {
     fn byte_count(&mut self) -> Option<u8> {
         let (count, place) = self.byte(None, &defs::BYTE_COUNT)?;
         let left = u16::try_from(self.reader.left()).unwrap_or(u16::MAX);
-        if u16::from(count) > left {
+        if u16::from(count) > left && !self.damaged {
             self.find(
                 Finding::Count {
                     got: u16::from(count),

@@ -8,6 +8,7 @@ mod line;
 mod tests;
 
 use crate::frame::ascii::hex_digit;
+use crate::frame::{Framing, detect};
 use crate::problem::Finding;
 
 /// What an input is.
@@ -172,6 +173,49 @@ pub fn read_hex(text: &[u8]) -> (Vec<u8>, Vec<TextProblem>) {
     reader.push(text, &mut out, &mut problems);
     reader.finish(&mut out, &mut problems);
     (out, problems)
+}
+
+/// An input as a stream of bytes, ready to be scanned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Import {
+    /// What the input was.
+    pub form: Form,
+    /// How its frames are marked off: as chosen, else as detected.
+    pub framing: Framing,
+    /// The stream.
+    pub bytes: Vec<u8>,
+    /// What in the text is no byte.
+    pub problems: Vec<TextProblem>,
+}
+
+/// Reads a whole input that is in memory. `framing` is the choice of the user, `None` to detect.
+#[must_use]
+pub fn import(input: &[u8], framing: Option<Framing>) -> Import {
+    let form = form_for(input, framing);
+    let (bytes, problems) = match form {
+        Form::Hex => read_hex(input),
+        Form::Binary | Form::AsciiLines => (input.to_vec(), Vec::new()),
+    };
+    let framing = framing.unwrap_or_else(|| match form {
+        Form::AsciiLines => Framing::Ascii,
+        Form::Hex | Form::Binary => detect(&bytes),
+    });
+    Import {
+        form,
+        framing,
+        bytes,
+        problems,
+    }
+}
+
+/// The form of an input for a chosen framing: lines with a colon are characters of the stream only
+/// if Modbus ASCII is looked for.
+#[must_use]
+pub fn form_for(start: &[u8], framing: Option<Framing>) -> Form {
+    match form(start) {
+        Form::AsciiLines if !matches!(framing, None | Some(Framing::Ascii)) => Form::Hex,
+        form => form,
+    }
 }
 
 /// Appends the bytes of an even number of digits.

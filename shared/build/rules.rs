@@ -1,0 +1,363 @@
+//! The numbered rules that a map must keep.
+//!
+//! | Rule | Demands |
+//! |---|---|
+//! | R00 | every cell can be read (checked while reading) |
+//! | R01 | the rows of a table cover it from address 0 without hole or overlap, for each model |
+//! | R02 | keys are lower snake case and unique within the table of a model |
+//! | R03 | every row has a page, every file a known document |
+//! | R04 | a named set exists and suits the type; every set is used |
+//! | R05 | codes of a set are unique; each lies in the range of some row, and each code of a range has a name |
+//! | R06 | a scale stands only on numbers and is not zero |
+//! | R07 | the unit is a known one and stands only on numbers |
+//! | R08 | the number of words fits the type, and the address space |
+//! | R09 | `min` and `max` come together, in order, and fit the type |
+//! | R10 | trust is `reading` exactly where a reading is named; readings exist and are used |
+//! | R11 | a writable holding register has a user level |
+//! | R12 | bits of a set are unique and fit the words of the rows that use it |
+//! | R13 | reserved rows are read-only, bits and registers of read-only tables too |
+//! | R14 | no blanks around labels, notes and groups; labels and groups are not empty |
+//! | R15 | a reading mentioned in a note exists |
+//! | R16 | a bit names both of its states or none |
+//! | R17 | a group has at least two rows (a single one is a misspelt group) |
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::types::{At, Data, Device, Doc, Member, Problem, Row, TABLES, TRUST, UNITS};
+
+/// The problems found so far.
+#[derive(Default)]
+struct Findings(Vec<Problem>);
+
+impl Findings {
+    fn add(&mut self, rule: &'static str, at: &At, text: impl Into<String>) {
+        self.0.push(Problem {
+            at: at.clone(),
+            rule,
+            text: text.into(),
+        });
+    }
+
+    fn unless(&mut self, kept: bool, rule: &'static str, at: &At, text: impl Into<String>) {
+        if !kept {
+            self.add(rule, at, text);
+        }
+    }
+}
+
+/// All violations, in no particular order of importance.
+pub fn check(data: &Data) -> Vec<Problem> {
+    let mut found = Findings::default();
+    for device in &data.devices {
+        coverage(device, &mut found);
+        sources(device, &data.docs, &mut found);
+        for row in &device.rows {
+            shape(row, &mut found);
+            access(device, row, &mut found);
+            texts(row, &mut found);
+        }
+        sets(device, &mut found);
+        readings(device, &mut found);
+        groups(device, &mut found);
+    }
+    found.0
+}
+
+/// R01, R02.
+fn coverage(device: &Device, found: &mut Findings) {
+    for (position, model) in device.models.iter().enumerate() {
+        for (table, (name, _)) in TABLES.iter().enumerate() {
+            let mut rows = device.rows_of(position, table);
+            rows.sort_by_key(|(_, row)| row.address);
+            let (mut next, mut keys) = (0, BTreeSet::new());
+            for (_, row) in rows {
+                let starts = u32::from(row.address);
+                let text = format!("{} {name}: starts at {starts}, expected {next}", model.key);
+                found.unless(starts == next, "R01", &row.at, text);
+                next = row.end();
+                let text = format!("{} {name}: key {} is taken", model.key, row.key);
+                found.unless(keys.insert(&row.key), "R02", &row.at, text);
+            }
+        }
+    }
+    let members = device
+        .members
+        .iter()
+        .flat_map(|m| [(&m.at, &m.set), (&m.at, &m.key)]);
+    for (at, key) in device.rows.iter().map(|r| (&r.at, &r.key)).chain(members) {
+        found.unless(
+            is_snake_case(key),
+            "R02",
+            at,
+            format!("key {key:?} is no snake case"),
+        );
+    }
+}
+
+fn is_snake_case(key: &str) -> bool {
+    key.starts_with(|c: char| c.is_ascii_lowercase())
+        && key.split('_').all(|part| {
+            !part.is_empty()
+                && part
+                    .chars()
+                    .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+        })
+}
+
+/// R03.
+fn sources(device: &Device, docs: &[Doc], found: &mut Findings) {
+    for file in &device.files {
+        let known = docs.iter().any(|d| d.key == file.doc);
+        found.unless(
+            known,
+            "R03",
+            &file.at,
+            format!("unknown document {:?}", file.doc),
+        );
+        found.unless(
+            !file.part.is_empty(),
+            "R03",
+            &file.at,
+            "the table is not named",
+        );
+    }
+    for row in &device.rows {
+        found.unless(row.page.is_some(), "R03", &row.at, "no page");
+    }
+}
+
+/// R06 to R09.
+fn shape(row: &Row, found: &mut Findings) {
+    let (kind, at) = (row.kind, &row.at);
+    if let Some(scale) = row.scale {
+        found.unless(kind.number, "R06", at, format!("{} has no scale", kind.key));
+        found.unless(
+            scale.num > 0 && scale.den > 0,
+            "R06",
+            at,
+            "the scale is zero",
+        );
+    }
+    let unit = row.unit.as_str();
+    found.unless(
+        UNITS.contains(&unit),
+        "R07",
+        at,
+        format!("unknown unit {unit:?}"),
+    );
+    found.unless(
+        kind.number || unit.is_empty(),
+        "R07",
+        at,
+        format!("{} has no unit", kind.key),
+    );
+    let (fewest, most) = kind.words;
+    let fits = (fewest..=most).contains(&row.words) && row.end() <= 0x1_0000;
+    found.unless(
+        fits,
+        "R08",
+        at,
+        format!("{} of {} word(s)", kind.key, row.words),
+    );
+    match (row.min, row.max) {
+        (None, None) => {}
+        (Some(min), Some(max)) => {
+            let fits = kind
+                .range
+                .is_some_and(|(low, high)| low <= i64::from(min) && i64::from(max) <= high);
+            found.unless(
+                min <= max && fits,
+                "R09",
+                at,
+                format!("{min} to {max}: {}", kind.key),
+            );
+        }
+        _ => found.add("R09", at, "min and max come together"),
+    }
+}
+
+/// R11, R13.
+fn access(device: &Device, row: &Row, found: &mut Findings) {
+    let table = device.table_of(row);
+    let needs_level = table == "holding" && row.is_writable();
+    found.unless(
+        !needs_level || row.level.is_some(),
+        "R11",
+        &row.at,
+        "no user level",
+    );
+    let read_only = row.is_reserved() || matches!(table, "discrete" | "input");
+    found.unless(
+        !(read_only && row.is_writable()),
+        "R13",
+        &row.at,
+        "must be read-only",
+    );
+}
+
+/// R14.
+fn texts(row: &Row, found: &mut Findings) {
+    for text in [&row.label, &row.note, &row.group] {
+        found.unless(
+            text.trim() == text,
+            "R14",
+            &row.at,
+            format!("blanks around {text:?}"),
+        );
+    }
+    found.unless(!row.label.is_empty(), "R14", &row.at, "no label");
+    found.unless(!row.group.is_empty(), "R14", &row.at, "no group");
+}
+
+/// R04, R05, R12, R16.
+fn sets(device: &Device, found: &mut Findings) {
+    let mut sets: BTreeMap<&str, Vec<&Member>> = BTreeMap::new();
+    for member in &device.members {
+        let set = sets.entry(&member.set).or_default();
+        let rule = if member.bits { "R12" } else { "R05" };
+        let unique = !set
+            .iter()
+            .any(|m| m.value == member.value || m.key == member.key);
+        found.unless(
+            unique,
+            rule,
+            &member.at,
+            format!("{} is there twice", member.value),
+        );
+        found.unless(
+            member.zero.is_empty() == member.one.is_empty(),
+            "R16",
+            &member.at,
+            "one state has no name",
+        );
+        set.push(member);
+    }
+    for row in &device.rows {
+        let bits = row.kind.key == "bits";
+        let needed = bits || row.kind.key == "enum" || row.kind.key == "torque";
+        found.unless(
+            needed != row.set.is_empty(),
+            "R04",
+            &row.at,
+            "a set where none is due",
+        );
+        if let Some(members) = sets.get(row.set.as_str()) {
+            let suits = members.iter().all(|m| m.bits == bits);
+            found.unless(
+                suits,
+                "R04",
+                &row.at,
+                format!("set {} is of the other sort", row.set),
+            );
+            named(row, members, found);
+        } else if needed {
+            found.add("R04", &row.at, format!("no set {:?}", row.set));
+        }
+    }
+    for (name, members) in &sets {
+        let users: Vec<&Row> = device.rows.iter().filter(|r| r.set == *name).collect();
+        for member in members {
+            let reached = users.iter().any(|row| reaches(row, member));
+            let rule = match (users.is_empty(), member.bits) {
+                (true, _) => "R04",
+                (false, true) => "R12",
+                (false, false) => "R05",
+            };
+            let text = format!("no row can show {} of {name}", member.value);
+            found.unless(reached, rule, &member.at, text);
+        }
+    }
+}
+
+/// R05: every code that a row allows has a name.
+fn named(row: &Row, members: &[&Member], found: &mut Findings) {
+    if row.kind.key != "enum" {
+        return;
+    }
+    let (Some(min), Some(max)) = (row.min, row.max) else {
+        return found.add("R05", &row.at, "a row of codes has a range");
+    };
+    for code in min..=max {
+        let known = members.iter().any(|m| i32::from(m.value) == code);
+        found.unless(
+            known,
+            "R05",
+            &row.at,
+            format!("code {code} of {} has no name", row.set),
+        );
+    }
+}
+
+/// True if a value of the row can be this code or have this bit.
+fn reaches(row: &Row, member: &Member) -> bool {
+    if member.bits {
+        return u32::from(member.value) < u32::from(row.words) * 16;
+    }
+    let value = i32::from(member.value);
+    row.min.is_none_or(|min| min <= value) && row.max.is_none_or(|max| value <= max)
+}
+
+/// R10, R15.
+fn readings(device: &Device, found: &mut Findings) {
+    let known: BTreeSet<&str> = device.readings.iter().map(|r| r.id.as_str()).collect();
+    let mut used = BTreeSet::new();
+    let absent = device.models.iter().filter(|m| !m.reading.is_empty());
+    let cited = device.rows.iter().filter(|r| !r.reading.is_empty());
+    for (at, id) in absent
+        .map(|m| (&m.at, &m.reading))
+        .chain(cited.map(|r| (&r.at, &r.reading)))
+    {
+        found.unless(
+            known.contains(id.as_str()),
+            "R10",
+            at,
+            format!("no reading {id}"),
+        );
+        used.insert(id.as_str());
+    }
+    for row in &device.rows {
+        let trusted = TRUST.get(row.trust).is_some_and(|t| t.0 == "reading");
+        let text = "trust and reading disagree";
+        found.unless(trusted != row.reading.is_empty(), "R10", &row.at, text);
+        for id in mentioned(&row.note) {
+            found.unless(
+                known.contains(id),
+                "R15",
+                &row.at,
+                format!("no reading {id}"),
+            );
+            used.insert(id);
+        }
+    }
+    for reading in &device.readings {
+        let unused = format!("{} is not used", reading.id);
+        found.unless(
+            used.contains(reading.id.as_str()),
+            "R10",
+            &reading.at,
+            unused,
+        );
+    }
+}
+
+/// The reading ids in a note: words of `E` and two digits.
+fn mentioned(note: &str) -> impl Iterator<Item = &str> {
+    note.split(|c: char| !c.is_ascii_alphanumeric())
+        .filter(|word| {
+            word.strip_prefix('E')
+                .is_some_and(|n| n.len() == 2 && n.bytes().all(|b| b.is_ascii_digit()))
+        })
+}
+
+/// R17.
+fn groups(device: &Device, found: &mut Findings) {
+    for row in &device.rows {
+        let alone = device.rows.iter().filter(|r| r.group == row.group).count() == 1;
+        found.unless(
+            !alone,
+            "R17",
+            &row.at,
+            format!("group {:?} has one row", row.group),
+        );
+    }
+}
