@@ -9,6 +9,8 @@ mod emit;
 mod read;
 #[path = "build/rules.rs"]
 mod rules;
+#[path = "build/sets.rs"]
+mod sets;
 #[path = "build/types.rs"]
 mod types;
 

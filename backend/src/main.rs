@@ -1,2 +1,8 @@
 //! The `valvescope` binary.
-fn main() {}
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    backend::cli::run(backend::cli::Cli::parse())
+}

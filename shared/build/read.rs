@@ -55,7 +55,7 @@ fn device(folder: &Path, problems: &mut Vec<Problem>) -> io::Result<Device> {
         key,
         ..Device::default()
     };
-    for line in Line::all(&folder.join("models.csv"))? {
+    for line in Line::all(&folder.join("models.csv"), problems)? {
         d.models.push(Model {
             key: line.text("key", problems),
             name: line.text("name", problems),
@@ -65,7 +65,7 @@ fn device(folder: &Path, problems: &mut Vec<Problem>) -> io::Result<Device> {
             at: line.at,
         });
     }
-    for line in Line::all(&folder.join("files.csv"))? {
+    for line in Line::all(&folder.join("files.csv"), problems)? {
         d.files.push(File {
             file: line.text("file", problems),
             table: line.word("table", TABLES, problems),
@@ -77,12 +77,12 @@ fn device(folder: &Path, problems: &mut Vec<Problem>) -> io::Result<Device> {
         });
     }
     for (file, name) in d.files.iter().map(|f| &f.file).enumerate() {
-        for line in Line::all(&folder.join(name))? {
+        for line in Line::all(&folder.join(name), problems)? {
             d.rows.push(row(line, file, &d.models, problems));
         }
     }
     for (name, bits) in [("enums.csv", false), ("bits.csv", true)] {
-        for line in Line::all(&folder.join(name))? {
+        for line in Line::all(&folder.join(name), problems)? {
             d.members.push(Member {
                 set: line.text("set", problems),
                 bits,
@@ -103,7 +103,7 @@ fn device(folder: &Path, problems: &mut Vec<Problem>) -> io::Result<Device> {
             });
         }
     }
-    for line in Line::all(&folder.join("readings.csv"))? {
+    for line in Line::all(&folder.join("readings.csv"), problems)? {
         d.readings.push(Reading {
             id: line.text("id", problems),
             settled: line.word("settled", SETTLED, problems),
@@ -175,24 +175,34 @@ struct Line {
 }
 
 impl Line {
-    fn all(path: &Path) -> io::Result<Vec<Self>> {
+    /// The lines of a file. One with too few or too many cells is a problem and left out.
+    fn all(path: &Path, problems: &mut Vec<Problem>) -> io::Result<Vec<Self>> {
         let file = path.to_string_lossy().into_owned();
         let named = |e: csv::Error| io::Error::other(format!("{file}: {e}"));
         let mut reader = csv::Reader::from_path(path).map_err(named)?;
         let header = reader.headers().map_err(named)?.clone();
         let mut lines = Vec::new();
         for cells in reader.records() {
-            let cells = cells.map_err(named)?;
-            let line = cells.position().map_or(0, csv::Position::line);
+            let position = match &cells {
+                Ok(cells) => cells.position(),
+                Err(error) => error.position(),
+            };
             let at = At {
                 file: file.clone(),
-                line,
+                line: position.map_or(0, csv::Position::line),
             };
-            lines.push(Self {
-                at,
-                header: header.clone(),
-                cells,
-            });
+            match cells {
+                Ok(cells) => lines.push(Self {
+                    at,
+                    header: header.clone(),
+                    cells,
+                }),
+                Err(error) => problems.push(Problem {
+                    at,
+                    rule: "R00",
+                    text: error.to_string(),
+                }),
+            }
         }
         Ok(lines)
     }

@@ -21,16 +21,18 @@
 //! | R16 | a bit names both of its states or none |
 //! | R17 | a group has at least two rows (a single one is a misspelt group) |
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::types::{At, Data, Device, Doc, Member, Problem, Row, TABLES, TRUST, UNITS};
+use crate::sets;
+use crate::types::{At, Data, Device, Doc, Problem, Row, TABLES, TRUST, UNITS};
 
 /// The problems found so far.
 #[derive(Default)]
-struct Findings(Vec<Problem>);
+pub struct Findings(Vec<Problem>);
 
 impl Findings {
-    fn add(&mut self, rule: &'static str, at: &At, text: impl Into<String>) {
+    /// A rule is broken here.
+    pub fn add(&mut self, rule: &'static str, at: &At, text: impl Into<String>) {
         self.0.push(Problem {
             at: at.clone(),
             rule,
@@ -38,7 +40,8 @@ impl Findings {
         });
     }
 
-    fn unless(&mut self, kept: bool, rule: &'static str, at: &At, text: impl Into<String>) {
+    /// A rule is broken here, unless it is kept.
+    pub fn unless(&mut self, kept: bool, rule: &'static str, at: &At, text: impl Into<String>) {
         if !kept {
             self.add(rule, at, text);
         }
@@ -56,7 +59,7 @@ pub fn check(data: &Data) -> Vec<Problem> {
             access(device, row, &mut found);
             texts(row, &mut found);
         }
-        sets(device, &mut found);
+        sets::check(device, &mut found);
         readings(device, &mut found);
         groups(device, &mut found);
     }
@@ -207,94 +210,6 @@ fn texts(row: &Row, found: &mut Findings) {
     }
     found.unless(!row.label.is_empty(), "R14", &row.at, "no label");
     found.unless(!row.group.is_empty(), "R14", &row.at, "no group");
-}
-
-/// R04, R05, R12, R16.
-fn sets(device: &Device, found: &mut Findings) {
-    let mut sets: BTreeMap<&str, Vec<&Member>> = BTreeMap::new();
-    for member in &device.members {
-        let set = sets.entry(&member.set).or_default();
-        let rule = if member.bits { "R12" } else { "R05" };
-        let unique = !set
-            .iter()
-            .any(|m| m.value == member.value || m.key == member.key);
-        found.unless(
-            unique,
-            rule,
-            &member.at,
-            format!("{} is there twice", member.value),
-        );
-        found.unless(
-            member.zero.is_empty() == member.one.is_empty(),
-            "R16",
-            &member.at,
-            "one state has no name",
-        );
-        set.push(member);
-    }
-    for row in &device.rows {
-        let bits = row.kind.key == "bits";
-        let needed = bits || row.kind.key == "enum" || row.kind.key == "torque";
-        found.unless(
-            needed != row.set.is_empty(),
-            "R04",
-            &row.at,
-            "a set where none is due",
-        );
-        if let Some(members) = sets.get(row.set.as_str()) {
-            let suits = members.iter().all(|m| m.bits == bits);
-            found.unless(
-                suits,
-                "R04",
-                &row.at,
-                format!("set {} is of the other sort", row.set),
-            );
-            named(row, members, found);
-        } else if needed {
-            found.add("R04", &row.at, format!("no set {:?}", row.set));
-        }
-    }
-    for (name, members) in &sets {
-        let users: Vec<&Row> = device.rows.iter().filter(|r| r.set == *name).collect();
-        for member in members {
-            let reached = users.iter().any(|row| reaches(row, member));
-            let rule = match (users.is_empty(), member.bits) {
-                (true, _) => "R04",
-                (false, true) => "R12",
-                (false, false) => "R05",
-            };
-            let text = format!("no row can show {} of {name}", member.value);
-            found.unless(reached, rule, &member.at, text);
-        }
-    }
-}
-
-/// R05: every code that a row allows has a name.
-fn named(row: &Row, members: &[&Member], found: &mut Findings) {
-    if row.kind.key != "enum" {
-        return;
-    }
-    let (Some(min), Some(max)) = (row.min, row.max) else {
-        return found.add("R05", &row.at, "a row of codes has a range");
-    };
-    for code in min..=max {
-        let known = members.iter().any(|m| i32::from(m.value) == code);
-        found.unless(
-            known,
-            "R05",
-            &row.at,
-            format!("code {code} of {} has no name", row.set),
-        );
-    }
-}
-
-/// True if a value of the row can be this code or have this bit.
-fn reaches(row: &Row, member: &Member) -> bool {
-    if member.bits {
-        return u32::from(member.value) < u32::from(row.words) * 16;
-    }
-    let value = i32::from(member.value);
-    row.min.is_none_or(|min| min <= value) && row.max.is_none_or(|max| value <= max)
 }
 
 /// R10, R15.

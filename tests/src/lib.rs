@@ -13,6 +13,7 @@
 #[cfg(all(feature = "browser", not(target_arch = "wasm32")))]
 pub mod browser;
 pub mod golden;
+pub mod load;
 #[cfg(all(feature = "peers", not(target_arch = "wasm32")))]
 pub mod peers;
 #[cfg(not(target_arch = "wasm32"))]

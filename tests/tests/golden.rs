@@ -47,7 +47,10 @@ fn json_is_what_it_was() {
         } else {
             // The first line that differs says more than all of them.
             let differs = now.lines().zip(blessed.lines()).find(|(a, b)| a != b);
-            assert_eq!(differs, None, "{name}.jsonl; `cargo xtask bless` if that is meant");
+            assert_eq!(
+                differs, None,
+                "{name}.jsonl; `cargo xtask bless` if that is meant"
+            );
             assert_eq!(now.lines().count(), blessed.lines().count(), "{name}.jsonl");
         }
     }

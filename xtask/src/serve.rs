@@ -1,8 +1,8 @@
 //! `cargo xtask serve`: build everything, start the bridge, open the page.
 //!
-//! The bridge is built in the dev profile: a fresh machine starts sooner, the artefacts are those
-//! of `cargo xtask test`, and in that profile the page is read from `static/dist` at run time.
-//! The work that needs an optimiser is decoding in the browser, and the page is always optimised.
+//! The bridge is built in the dev profile: a fresh machine starts sooner, and the artefacts are
+//! those of `cargo xtask test`. The work that needs an optimiser is decoding in the browser, and
+//! the page is always optimised.
 
 use crate::{Result, shell, web};
 use std::env;

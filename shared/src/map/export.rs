@@ -4,7 +4,7 @@ use core::fmt::Write;
 
 use serde::Serialize;
 
-use super::row::{Access, DeviceMap, Row};
+use super::row::{Access, DeviceMap, Level, Row};
 use crate::address::RegisterNumber;
 
 /// One row in JSON. Names and order of the fields are a documented contract of the program.
@@ -62,7 +62,7 @@ pub fn json_line(map: &DeviceMap, row: &Row) -> String {
         scale: row.scale.to_string(),
         unit: row.unit,
         access: access(row.access),
-        level: row.level.map(|level| level.key()),
+        level: row.level.map(Level::key),
         min: row.range.map(|range| range.0),
         max: row.range.map(|range| range.1),
         set: row.set.map(|set| JsonSet {
@@ -131,7 +131,7 @@ pub fn csv_line(map: &DeviceMap, row: &Row) -> String {
         row.unit,
         access(row.access),
         if moves(row) { "true" } else { "false" },
-        row.level.map_or("", |level| level.key()),
+        row.level.map_or("", Level::key),
         &number(row.range.map(|range| range.0)),
         &number(row.range.map(|range| range.1)),
         &set,
@@ -169,7 +169,7 @@ pub fn text_line(row: &Row) -> String {
         row.kind.key(),
         row.unit,
         row.access.key(),
-        row.level.map_or("", |level| level.key()),
+        row.level.map_or("", Level::key),
         row.source,
     );
     line

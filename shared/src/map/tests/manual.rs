@@ -2,6 +2,7 @@
 
 use super::{at, members};
 use crate::address::Table;
+use crate::map::row::Level;
 
 /// Compares a row with `label | type words | scale unit | min..max | access level | group`.
 fn check(table: Table, address: u16, expected: &str) {
@@ -9,7 +10,7 @@ fn check(table: Table, address: u16, expected: &str) {
     let range = row
         .range
         .map_or("-".to_owned(), |(min, max)| format!("{min}..{max}"));
-    let level = row.level.map_or("-", |level| level.key());
+    let level = row.level.map_or("-", Level::key);
     let found = format!(
         "{} | {} {} | {} {} | {range} | {} {level} | {}",
         row.label,

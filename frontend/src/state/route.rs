@@ -1,0 +1,192 @@
+//! The place in the page that the address bar names: `#/device/XV-101/values?q=torque`.
+
+use core::fmt;
+
+use crate::format::{decode, encode};
+
+/// Tabs of a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Tab {
+    /// What the valve does, and whether it is healthy.
+    #[default]
+    Overview,
+    /// All registers.
+    Values,
+    /// The frames of this device on its bus.
+    Traffic,
+}
+
+impl Tab {
+    /// All tabs in their order.
+    pub const ALL: [Self; 3] = [Self::Overview, Self::Values, Self::Traffic];
+
+    /// The word in the address.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Overview => "overview",
+            Self::Values => "values",
+            Self::Traffic => "traffic",
+        }
+    }
+
+    /// The word on the tab.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Overview => "Overview",
+            Self::Values => "Values",
+            Self::Traffic => "Traffic",
+        }
+    }
+
+    fn from_key(key: &str) -> Self {
+        Self::ALL
+            .into_iter()
+            .find(|t| t.key() == key)
+            .unwrap_or_default()
+    }
+}
+
+/// One screen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Screen {
+    /// Bytes to meaning, offline.
+    #[default]
+    Decode,
+    /// All devices.
+    Devices,
+    /// One device, by its tag.
+    Device(String, Tab),
+    /// The frames on a bus; the first one if none is named.
+    Traffic(Option<String>),
+    /// Settings, sources, help.
+    Settings,
+}
+
+/// A screen with its settings, as the address bar has it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Route {
+    /// Which screen.
+    pub screen: Screen,
+    /// What is set on it, in the order of the address.
+    pub query: Vec<(String, String)>,
+}
+
+impl Route {
+    /// A screen with nothing set.
+    #[must_use]
+    pub const fn to(screen: Screen) -> Self {
+        Self {
+            screen,
+            query: Vec::new(),
+        }
+    }
+
+    /// Reads the part of an address from `#` on. What is not known leads to the first screen.
+    #[must_use]
+    pub fn parse(hash: &str) -> Self {
+        let hash = hash.trim_start_matches('#').trim_start_matches('/');
+        let (path, query) = hash.split_once('?').unwrap_or((hash, ""));
+        let mut parts = path.split('/').map(decode);
+        let first = parts.next().unwrap_or_default();
+        let second = parts.next().filter(|s| !s.is_empty());
+        let third = parts.next().unwrap_or_default();
+        let screen = match (first.as_str(), second) {
+            ("devices", _) | ("device", None) => Screen::Devices,
+            ("device", Some(tag)) => Screen::Device(tag, Tab::from_key(&third)),
+            ("traffic", bus) => Screen::Traffic(bus),
+            ("settings", _) => Screen::Settings,
+            _ => Screen::Decode,
+        };
+        let query = query
+            .split('&')
+            .filter_map(|pair| pair.split_once('='))
+            .map(|(key, value)| (decode(key), decode(value)))
+            .collect();
+        Self { screen, query }
+    }
+
+    /// A setting, if it is there.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&str> {
+        let (_, value) = self.query.iter().find(|(k, _)| k == key)?;
+        Some(value)
+    }
+
+    /// The same route with a setting changed; an empty one is left out.
+    #[must_use]
+    pub fn with(mut self, key: &str, value: &str) -> Self {
+        self.query.retain(|(k, _)| k != key);
+        if !value.is_empty() {
+            self.query.push((key.to_owned(), value.to_owned()));
+        }
+        self
+    }
+
+    /// True for screens that show what a backend sends.
+    #[must_use]
+    pub const fn is_live(&self) -> bool {
+        matches!(
+            self.screen,
+            Screen::Devices | Screen::Device(..) | Screen::Traffic(_)
+        )
+    }
+}
+
+impl fmt::Display for Route {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.screen {
+            Screen::Decode => f.write_str("#/decode")?,
+            Screen::Devices => f.write_str("#/devices")?,
+            Screen::Device(tag, tab) => write!(f, "#/device/{}/{}", encode(tag), tab.key())?,
+            Screen::Traffic(None) => f.write_str("#/traffic")?,
+            Screen::Traffic(Some(bus)) => write!(f, "#/traffic/{}", encode(bus))?,
+            Screen::Settings => f.write_str("#/settings")?,
+        }
+        for (at, (key, value)) in self.query.iter().enumerate() {
+            let lead = if at == 0 { '?' } else { '&' };
+            write!(f, "{lead}{}={}", encode(key), encode(value))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_come_back() {
+        for text in [
+            "#/decode",
+            "#/devices",
+            "#/device/XV-101/values?q=torque%20limit&table=holding",
+            "#/device/a%2Fb/overview",
+            "#/traffic",
+            "#/traffic/bus%201",
+            "#/settings",
+        ] {
+            assert_eq!(Route::parse(text).to_string(), text);
+        }
+    }
+
+    #[test]
+    fn anything_else_is_the_first_screen() {
+        for text in ["", "#", "#/", "#/nowhere/at/all"] {
+            assert_eq!(Route::parse(text).screen, Screen::Decode, "{text}");
+        }
+        assert_eq!(Route::parse("#/device").screen, Screen::Devices);
+        assert_eq!(
+            Route::parse("#/device/X/nonsense").screen,
+            Screen::Device("X".into(), Tab::Overview)
+        );
+    }
+
+    #[test]
+    fn settings_replace_and_vanish() {
+        let route = Route::to(Screen::Devices).with("q", "a").with("q", "b");
+        assert_eq!(route.get("q"), Some("b"));
+        assert_eq!(route.with("q", "").to_string(), "#/devices");
+    }
+}

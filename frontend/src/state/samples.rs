@@ -1,0 +1,115 @@
+//! Captures to try, part of the page so that they are there without a network.
+
+use shared::device::Device;
+
+/// A capture to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// Name in the address bar.
+    pub key: &'static str,
+    /// What people read.
+    pub title: &'static str,
+    /// What is to be seen in it.
+    pub about: &'static str,
+    /// The file as it is.
+    pub content: &'static [u8],
+    /// Device to decode with, where it can't be told from the bytes.
+    pub device: Option<Device>,
+}
+
+/// All samples.
+pub const SAMPLES: [Sample; 7] = [
+    Sample {
+        key: "icon3000-poll",
+        title: "ICON3000 poll",
+        about: "Status, identity, log and torque curve of an actuator, over four tables",
+        content: include_bytes!("../../../static/samples/icon3000-poll.hex"),
+        device: None,
+    },
+    Sample {
+        key: "damaged",
+        title: "Damaged capture",
+        about: "Noise, a flipped bit, swapped CRC bytes, an answer cut short",
+        content: include_bytes!("../../../static/samples/damaged.hex"),
+        device: None,
+    },
+    Sample {
+        key: "icon3000-manual",
+        title: "ICON3000 manual",
+        about: "The worked frames of VCIOM-16345-EN, tables 7 to 29",
+        content: include_bytes!("../../../static/samples/icon3000-manual.hex"),
+        device: Some(Device::Icon3000v2),
+    },
+    Sample {
+        key: "modbus-ascii",
+        title: "Modbus ASCII",
+        about: "Lines with a colon, one with a wrong LRC",
+        content: include_bytes!("../../../static/samples/modbus-ascii.txt"),
+        device: None,
+    },
+    Sample {
+        key: "modbus-tcp",
+        title: "Modbus TCP",
+        about: "Two requests under way at once, an exception",
+        content: include_bytes!("../../../static/samples/modbus-tcp.hex"),
+        device: None,
+    },
+    Sample {
+        key: "array",
+        title: "C array",
+        about: "Bytes as a program has them",
+        content: include_bytes!("../../../static/samples/array.c"),
+        device: None,
+    },
+    Sample {
+        key: "ddc100",
+        title: "DDC-100 poll",
+        about: "The printed example of LMAIM4019-00, section 3.2",
+        content: include_bytes!("../../../static/samples/ddc100.hex"),
+        device: None,
+    },
+];
+
+/// The sample with this key.
+#[must_use]
+pub fn by_key(key: &str) -> Option<&'static Sample> {
+    SAMPLES.iter().find(|s| s.key == key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::findings::Findings;
+    use crate::state::load::load;
+    use crate::state::work::Work;
+    use shared::frame::Framing;
+
+    /// Framing, frames, errors and device of a sample.
+    fn seen(key: &str) -> (Framing, u32, u32, Device) {
+        let sample = by_key(key).unwrap();
+        let work = Work::new(String::new(), load(sample.content, None), false);
+        let mut findings = Findings::default();
+        let context = work.context(sample.device);
+        while !findings.step(&work.session, &context, 100) {}
+        (
+            work.session.framing(),
+            work.session.len(),
+            findings.counts[2],
+            context.device,
+        )
+    }
+
+    #[test]
+    fn every_sample_shows_what_it_promises() {
+        let v2 = Device::Icon3000v2;
+        assert_eq!(seen("icon3000-poll"), (Framing::Rtu, 22, 0, v2));
+        assert_eq!(seen("icon3000-manual"), (Framing::Rtu, 20, 0, v2));
+        assert_eq!(seen("modbus-ascii"), (Framing::Ascii, 9, 1, v2));
+        assert_eq!(seen("modbus-tcp"), (Framing::Tcp, 8, 0, v2));
+        assert_eq!(seen("array"), (Framing::Rtu, 4, 0, v2));
+        assert_eq!(seen("ddc100"), (Framing::Rtu, 2, 0, Device::None));
+        let (framing, frames, errors, device) = seen("damaged");
+        assert_eq!((framing, device), (Framing::Rtu, v2));
+        assert!(frames > 12 && errors > 4, "{frames} {errors}");
+    }
+}

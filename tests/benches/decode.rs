@@ -1,0 +1,251 @@
+//! Decoding, beside tokio-modbus and rmodbus in the same run. `cargo bench -p tests --bench decode`.
+//!
+//! What is compared: finding the frames of an RTU stream of requests (36 bytes on average) and
+//! proving their CRC. tokio-modbus keeps its codec to itself, so its server reads the stream from
+//! memory and answers nothing; rmodbus is asked for the length of each frame and parses it.
+
+use std::future::{Ready, ready};
+use std::hint::black_box;
+use std::io;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::task::{Context as Task, Poll};
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use shared::address::{Address, Table};
+use shared::decode::{Context, decode_into};
+use shared::device::Device;
+use shared::frame::{Frame, Framing, Role, scan_into};
+use shared::map::decode::values;
+use shared::map::row::Model;
+use shared::tree::Decoded;
+use tests::load::{Load, polls, requests, response};
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+
+const MESSAGES: u64 = 100_000;
+
+/// Frames, CRC and pairs of a stream, ours and the peers'.
+fn scanning(c: &mut Criterion) {
+    let mut group = c.benchmark_group("scan");
+    let load = requests(MESSAGES);
+    group.throughput(Throughput::Elements(load.messages));
+    let mut index: Vec<Frame> = Vec::new();
+    group.bench_function(BenchmarkId::new("valvescope", "requests"), |b| {
+        b.iter(|| {
+            scan_into(black_box(&load.bytes), Framing::Rtu, &mut index);
+            assert_eq!(index.len() as u64, load.messages);
+        });
+    });
+    group.bench_function(BenchmarkId::new("rmodbus", "requests"), |b| {
+        b.iter(|| assert_eq!(rmodbus_frames(black_box(&load.bytes)), load.messages));
+    });
+    let mut peer = TokioModbus::new(&load);
+    group.bench_function(BenchmarkId::new("tokio-modbus", "requests"), |b| {
+        b.iter(|| assert_eq!(peer.run(), load.messages));
+    });
+
+    let load = polls(MESSAGES);
+    group.bench_function(BenchmarkId::new("valvescope", "polls"), |b| {
+        b.iter(|| {
+            scan_into(black_box(&load.bytes), Framing::Rtu, &mut index);
+            assert_eq!(index.len() as u64, load.messages);
+        });
+    });
+    group.finish();
+}
+
+/// Frames and values of the ICON3000 map, without and with a tree.
+fn decoding(c: &mut Criterion) {
+    let mut group = c.benchmark_group("decode");
+    let load = polls(MESSAGES);
+    let mut index = Vec::new();
+    group.throughput(Throughput::Elements(load.messages));
+    group.bench_function("stream to values of the map", |b| {
+        b.iter(|| black_box(mapped(&load, &mut index)));
+    });
+
+    let context = Context {
+        framing: Framing::Rtu,
+        device: Device::Icon3000v2,
+    };
+    let request = shared::encode::frame(Framing::Rtu, 0, 1, &[3, 0x0B, 0xB8, 0, 10]);
+    let answer = shared::encode::frame(Framing::Rtu, 0, 1, &response(3000, 10, 5));
+    let both = [request.clone(), answer.clone()].concat();
+    scan_into(&both, Framing::Rtu, &mut index);
+    let frame = index[1];
+    assert_eq!(frame.role, Role::Response);
+    let mut tree = Decoded::default();
+    group.throughput(Throughput::Elements(1));
+    group.bench_function("field tree of 10 registers", |b| {
+        b.iter(|| {
+            decode_into(
+                black_box(&frame),
+                &answer,
+                Some(&request),
+                &context,
+                &mut tree,
+            );
+            assert!(tree.fields().len() > 10);
+        });
+    });
+    group.finish();
+}
+
+/// Scans a stream and reads every value of every response; the number of values.
+fn mapped(load: &Load, index: &mut Vec<Frame>) -> u64 {
+    scan_into(&load.bytes, Framing::Rtu, index);
+    let map = Model::Icon3000v2.map();
+    let bytes = |f: &Frame| &load.bytes[f.offset as usize..f.end() as usize];
+    let mut count = 0;
+    for frame in index.iter().filter(|f| f.role == Role::Response) {
+        let Some(request) = frame.pair().map(|p| bytes(&index[p as usize])) else {
+            continue;
+        };
+        let start = Address::new(u16::from_be_bytes([request[2], request[3]]));
+        let data = bytes(frame);
+        for (row, judged) in values(map, Table::Holding, start, &data[3..data.len() - 2]) {
+            black_box((row, judged));
+            count += 1;
+        }
+    }
+    count
+}
+
+/// rmodbus: length, then unit, function and CRC of each request.
+fn rmodbus_frames(mut bytes: &[u8]) -> u64 {
+    use rmodbus::server::ModbusFrame;
+    use rmodbus::{ModbusProto, guess_request_frame_len};
+    let mut response: Vec<u8> = Vec::with_capacity(256);
+    let mut count = 0;
+    while bytes.len() >= 8 {
+        let len = guess_request_frame_len(&bytes[..7], ModbusProto::Rtu).expect("a request");
+        let (frame, rest) = bytes.split_at(usize::from(len));
+        response.clear();
+        let mut parsed = ModbusFrame::new(frame[0], frame, ModbusProto::Rtu, &mut response);
+        parsed.parse().expect("a sound request");
+        count += u64::from(
+            parsed.processing_required || parsed.error.is_some() || parsed.response_required,
+        );
+        bytes = rest;
+    }
+    count
+}
+
+/// tokio-modbus' RTU codec behind its only door, the server.
+struct TokioModbus {
+    runtime: tokio::runtime::Runtime,
+    bytes: Arc<Vec<u8>>,
+}
+
+impl TokioModbus {
+    fn new(load: &Load) -> Self {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .expect("a runtime starts");
+        Self {
+            runtime,
+            bytes: Arc::new(load.bytes.clone()),
+        }
+    }
+
+    /// Has the server read the whole stream; the number of requests it saw.
+    fn run(&mut self) -> u64 {
+        let seen = Arc::new(AtomicU64::new(0));
+        let bytes = Arc::clone(&self.bytes);
+        let (done, finished) = tokio::sync::oneshot::channel();
+        let done = std::sync::Mutex::new(Some(done));
+        let count = Arc::clone(&seen);
+        self.runtime.block_on(async move {
+            let listener = tokio::net::TcpListener::bind("127.0.0.1:0")
+                .await
+                .expect("loopback");
+            let address = listener.local_addr().expect("an address");
+            let server = tokio_modbus::server::rtu_over_tcp::Server::new(listener);
+            let connected = |_, _| {
+                let end = done.lock().ok().and_then(|mut d| d.take());
+                let memory = Memory {
+                    bytes: Arc::clone(&bytes),
+                    at: 0,
+                    end,
+                };
+                ready(Ok::<_, io::Error>(Some((
+                    Counter(Arc::clone(&count)),
+                    memory,
+                ))))
+            };
+            let _client = tokio::net::TcpStream::connect(address)
+                .await
+                .expect("loopback");
+            let stop = async { finished.await.unwrap_or(()) };
+            server
+                .serve_until(&connected, |_| {}, stop)
+                .await
+                .expect("serves");
+        });
+        seen.load(Ordering::Relaxed)
+    }
+}
+
+/// Counts requests and answers none.
+struct Counter(Arc<AtomicU64>);
+
+impl tokio_modbus::server::Service for Counter {
+    type Request = tokio_modbus::SlaveRequest<'static>;
+    type Response = Option<tokio_modbus::Response>;
+    type Exception = tokio_modbus::ExceptionCode;
+    type Future = Ready<Result<Self::Response, Self::Exception>>;
+
+    fn call(&self, request: Self::Request) -> Self::Future {
+        black_box(request);
+        self.0.fetch_add(1, Ordering::Relaxed);
+        ready(Ok(None))
+    }
+}
+
+/// A transport that reads from memory; its drop says that the server is through.
+struct Memory {
+    bytes: Arc<Vec<u8>>,
+    at: usize,
+    end: Option<tokio::sync::oneshot::Sender<()>>,
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        if let Some(end) = self.end.take() {
+            let _receiver_may_be_gone = end.send(());
+        }
+    }
+}
+
+impl AsyncRead for Memory {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        _: &mut Task<'_>,
+        buf: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        let len = buf.remaining().min(self.bytes.len() - self.at);
+        let at = self.at;
+        buf.put_slice(&self.bytes[at..at + len]);
+        self.at += len;
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl AsyncWrite for Memory {
+    fn poll_write(self: Pin<&mut Self>, _: &mut Task<'_>, buf: &[u8]) -> Poll<io::Result<usize>> {
+        Poll::Ready(Ok(buf.len()))
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Task<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Task<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+}
+
+criterion_group!(benches, scanning, decoding);
+criterion_main!(benches);
