@@ -61,8 +61,15 @@ fn sets(device: &Device, prefix: &str, out: &mut String) -> fmt::Result {
     for (set, mut members) in sets {
         members.sort_by_key(|m| m.value);
         let bits = members.iter().any(|m| m.bits);
+        let mask = members
+            .iter()
+            .filter(|m| m.bits)
+            .fold(0_u32, |mask, m| mask | 1 << m.value);
         writeln!(out, "static {prefix}_SET_{}: Set = Set {{", screaming(set))?;
-        writeln!(out, "    name: {set:?}, bits: {bits}, members: &[")?;
+        writeln!(
+            out,
+            "    name: {set:?}, bits: {bits}, mask: {mask:#x}, members: &["
+        )?;
         for m in members {
             let states = if m.zero.is_empty() {
                 "None".to_owned()
@@ -184,11 +191,14 @@ fn map(
     let own = screaming(&model.key);
     let mut gaps: Vec<Gap<'_>> = Vec::new();
     let mut items: Vec<String> = Vec::new();
+    let mut keys: Vec<u32> = Vec::new();
     for table in 0..TABLES.len() {
         let mut rows = device.rows_of(position, table);
         rows.sort_by_key(|(_, row)| row.address);
         for (index, row) in rows {
+            let key = (table as u32) << 16 | u32::from(row.address);
             if row.since <= position {
+                keys.push(key);
                 items.push(format!("&{prefix}_ROWS[{index}]"));
                 continue;
             }
@@ -206,6 +216,7 @@ fn map(
                     gap.end = row.end();
                 }
                 _ => {
+                    keys.push(key);
                     items.push(format!("&{own}_ABSENT[{}]", gaps.len()));
                     gaps.push(Gap {
                         since,
@@ -236,7 +247,7 @@ fn map(
     for item in items {
         writeln!(out, "        {item},")?;
     }
-    writeln!(out, "    ],\n}};\n")
+    writeln!(out, "    ],\n    keys: &{keys:?},\n}};\n")
 }
 
 fn write_gap(

@@ -47,6 +47,16 @@ impl Table {
         }
     }
 
+    /// 0 to 3, in the order in which maps are listed.
+    pub(crate) const fn index(self) -> u32 {
+        match self {
+            Self::Coil => 0,
+            Self::Discrete => 1,
+            Self::Input => 2,
+            Self::Holding => 3,
+        }
+    }
+
     /// The table with this [`key`](Self::key).
     #[must_use]
     pub fn from_key(key: &str) -> Option<Self> {

@@ -123,12 +123,11 @@ impl Image {
         let judged = if row.table.is_bits() {
             let value = Value::Bit {
                 on: bytes != [0, 0],
-                words: ON_OFF,
+                words: &ON_OFF,
             };
             Judged {
                 value,
                 quality: Quality::Good,
-                finding: None,
             }
         } else {
             value(row, &bytes)

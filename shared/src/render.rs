@@ -240,7 +240,7 @@ impl fmt::Display for Value {
             }
             Self::Bit {
                 on,
-                words: (no, yes),
+                words: &(no, yes),
             } => f.write_str(if on { yes } else { no }),
             Self::Date { year, month, day } => write!(f, "{year:04}-{month:02}-{day:02}"),
             Self::Time {

@@ -42,7 +42,7 @@ pub enum Value {
         /// Its state.
         on: bool,
         /// What 0 and 1 mean.
-        words: (&'static str, &'static str),
+        words: &'static Words,
     },
     /// Characters, at the field's place; blanks and NULs at the end are padding.
     Text,
@@ -77,10 +77,13 @@ pub enum Value {
     Raw,
 }
 
+/// What 0 and 1 mean.
+pub type Words = (&'static str, &'static str);
+
 /// The words for a bit that has no others.
-pub const ACTIVE: (&str, &str) = ("not active", "active");
+pub static ACTIVE: Words = ("not active", "active");
 /// The words for a coil or discrete input.
-pub const ON_OFF: (&str, &str) = ("off", "on");
+pub static ON_OFF: Words = ("off", "on");
 
 /// How much a value can be relied on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

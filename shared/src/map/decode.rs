@@ -9,15 +9,13 @@ use crate::scale::Scale;
 use crate::tree::{Decoded, FieldId, Name};
 use crate::value::{ACTIVE, Quality, Value};
 
-/// A value together with how far it can be relied on and what is wrong with it.
+/// A value together with how far it can be relied on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
     /// What the words say.
     pub value: Value,
-    /// How far to rely on it.
+    /// How far to rely on it; [`finding`] says why.
     pub quality: Quality,
-    /// Why not, if there is a reason.
-    pub finding: Option<Finding>,
 }
 
 /// Reads one value of a device from exactly the bytes of its words, high byte first.
@@ -25,16 +23,49 @@ pub struct Judged {
 /// Allocates nothing; this is the hot path of bulk decoding. Bytes of another length than the row
 /// wants give [`Value::Raw`].
 #[must_use]
+#[inline]
 pub fn value(row: &'static Row, bytes: &[u8]) -> Judged {
     let judged = by_kind(row, bytes);
-    let open = row.reading.is_some_and(|r| r.settled == Settled::No);
-    if open && judged.quality == Quality::Good && row.kind != Kind::Reserved {
+    if row.reading.is_some_and(|r| r.settled == Settled::No)
+        && judged.quality == Quality::Good
+        && row.kind != Kind::Reserved
+    {
         return Judged {
             quality: Quality::Disputed,
             ..judged
         };
     }
     judged
+}
+
+/// What is to be said about a value that [`value`] read from these bytes.
+#[must_use]
+pub fn finding(row: &Row, judged: &Judged, bytes: &[u8]) -> Option<Finding> {
+    match (judged.quality, judged.value) {
+        (Quality::OutOfRange, Value::Number { raw, .. }) => out_of_range(row, raw),
+        (Quality::OutOfRange, Value::Code { raw, .. }) => out_of_range(row, i64::from(raw)),
+        (Quality::Invalid, Value::Code { raw, .. }) => Some(Finding::NoName { code: raw }),
+        (Quality::Invalid, Value::Amount { .. }) => Some(Finding::NoName {
+            code: u32::from(*bytes.first()?),
+        }),
+        (Quality::Invalid, Value::Text) => Some(Finding::BadDigits {
+            what: "printable characters",
+        }),
+        (Quality::Invalid, _) if row.kind == Kind::BcdDate => Some(Finding::BadDigits {
+            what: "a BCD date (DDMM YYYY)",
+        }),
+        (Quality::Invalid, _) => Some(Finding::BadDigits {
+            what: "a BCD time (00HH MMSS)",
+        }),
+        (_, Value::Flags { raw, set }) if raw & !set.mask != 0 => Some(Finding::UnusedBits {
+            bits: raw & !set.mask,
+        }),
+        _ => None,
+    }
+}
+
+fn out_of_range(row: &Row, got: i64) -> Option<Finding> {
+    row.range.map(|(min, max)| Finding::Range { got, min, max })
 }
 
 fn by_kind(row: &'static Row, bytes: &[u8]) -> Judged {
@@ -47,7 +78,7 @@ fn by_kind(row: &'static Row, bytes: &[u8]) -> Judged {
         (Kind::Bits, &[a, b, c, d]) => flags(row, u32::from_be_bytes([a, b, c, d])),
         (Kind::BcdDate, &[day, month, century, year]) => date(day, month, [century, year]),
         (Kind::BcdTime, &[0, hour, minute, second]) => time(hour, minute, second),
-        (Kind::BcdTime, &[_, _, _, _]) => invalid("a BCD time (00HH MMSS)"),
+        (Kind::BcdTime, &[_, _, _, _]) => INVALID,
         (Kind::Ascii | Kind::Ascii7, text) => characters(text),
         (Kind::Torque, &[unit, ..]) => amount(row, unit),
         (Kind::Curve, _) => good(Value::Group),
@@ -57,34 +88,33 @@ fn by_kind(row: &'static Row, bytes: &[u8]) -> Judged {
     }
 }
 
+/// Bytes that are no value of their type.
+const INVALID: Judged = Judged {
+    value: Value::Raw,
+    quality: Quality::Invalid,
+};
+
 const fn good(value: Value) -> Judged {
     Judged {
         value,
         quality: Quality::Good,
-        finding: None,
-    }
-}
-
-const fn invalid(what: &'static str) -> Judged {
-    Judged {
-        value: Value::Raw,
-        quality: Quality::Invalid,
-        finding: Some(Finding::BadDigits { what }),
     }
 }
 
 fn number(row: &'static Row, raw: i64) -> Judged {
-    let value = Value::Number {
-        raw,
-        scale: row.scale,
-    };
-    match row.range {
-        Some((min, max)) if raw < i64::from(min) || raw > i64::from(max) => Judged {
-            value,
-            quality: Quality::OutOfRange,
-            finding: Some(Finding::Range { got: raw, min, max }),
+    Judged {
+        value: Value::Number {
+            raw,
+            scale: row.scale,
         },
-        _ => good(value),
+        quality: in_range(row, raw),
+    }
+}
+
+fn in_range(row: &Row, raw: i64) -> Quality {
+    match row.range {
+        Some((min, max)) if raw < i64::from(min) || raw > i64::from(max) => Quality::OutOfRange,
+        _ => Quality::Good,
     }
 }
 
@@ -99,55 +129,39 @@ fn signed(row: &'static Row, raw: i16) -> Judged {
         return Judged {
             value,
             quality: Quality::Disputed,
-            finding: None,
         };
     }
     number(row, i64::from(raw))
 }
 
+/// A code can have a name and still be outside the range of its register.
 fn code(row: &'static Row, raw: u32) -> Judged {
     let Some(set) = row.set else {
         return good(Value::Hex(raw));
     };
-    let value = Value::Code { raw, set };
-    if set.get(raw).is_some() {
-        // A code can have a name and still be outside the range of this register.
-        return Judged {
-            value,
-            ..number(row, i64::from(raw))
-        };
-    }
+    let named = set.get(raw).is_some();
+    let quality = if named {
+        in_range(row, i64::from(raw))
+    } else {
+        Quality::Invalid
+    };
     Judged {
-        value,
-        quality: Quality::Invalid,
-        finding: Some(Finding::NoName { code: raw }),
+        value: Value::Code { raw, set },
+        quality,
     }
 }
 
 fn flags(row: &'static Row, raw: u32) -> Judged {
-    let Some(set) = row.set else {
-        return good(Value::Hex(raw));
-    };
-    let named = set.members.iter().fold(0_u32, |bits, m| {
-        bits | 1_u32.wrapping_shl(u32::from(m.value))
-    });
-    let unused = raw & !named;
-    let finding = if unused == 0 {
-        None
-    } else {
-        Some(Finding::UnusedBits { bits: unused })
-    };
-    Judged {
-        value: Value::Flags { raw, set },
-        quality: Quality::Good,
-        finding,
-    }
+    good(
+        row.set
+            .map_or(Value::Hex(raw), |set| Value::Flags { raw, set }),
+    )
 }
 
 /// Two decimal digits in one byte.
 fn bcd(byte: u8) -> Option<u8> {
     let (high, low) = (byte >> 4, byte & 0x0F);
-    (high < 10 && low < 10).then(|| high.saturating_mul(10).saturating_add(low))
+    (high < 10 && low < 10).then(|| high.wrapping_mul(10).wrapping_add(low))
 }
 
 fn date(day: u8, month: u8, year: [u8; 2]) -> Judged {
@@ -158,11 +172,11 @@ fn date(day: u8, month: u8, year: [u8; 2]) -> Judged {
     match (bcd(day), bcd(month), bcd(century), bcd(year)) {
         (Some(day @ 1..=31), Some(month @ 1..=12), Some(century), Some(year)) => {
             let year = u16::from(century)
-                .saturating_mul(100)
-                .saturating_add(u16::from(year));
+                .wrapping_mul(100)
+                .wrapping_add(u16::from(year));
             good(Value::Date { year, month, day })
         }
-        _ => invalid("a BCD date (DDMM YYYY)"),
+        _ => INVALID,
     }
 }
 
@@ -173,7 +187,7 @@ fn time(hour: u8, minute: u8, second: u8) -> Judged {
             minute,
             second,
         }),
-        _ => invalid("a BCD time (00HH MMSS)"),
+        _ => INVALID,
     }
 }
 
@@ -181,15 +195,15 @@ fn characters(text: &[u8]) -> Judged {
     if text.iter().all(|b| matches!(b, 0 | b' ')) {
         return good(Value::Unavailable("empty"));
     }
-    if text.iter().all(|b| matches!(b, 0 | 0x20..=0x7E | 0xA0..)) {
-        return good(Value::Text);
-    }
+    let printable = text.iter().all(|b| matches!(b, 0 | 0x20..=0x7E | 0xA0..));
+    let quality = if printable {
+        Quality::Good
+    } else {
+        Quality::Invalid
+    };
     Judged {
         value: Value::Text,
-        quality: Quality::Invalid,
-        finding: Some(Finding::BadDigits {
-            what: "printable characters",
-        }),
+        quality,
     }
 }
 
@@ -204,38 +218,63 @@ fn amount(row: &'static Row, unit: u8) -> Judged {
         .set
         .and_then(|s| s.get(u32::from(code)))
         .map(|m| m.label);
+    let quality = if name.is_some() {
+        Quality::Good
+    } else {
+        Quality::Invalid
+    };
     Judged {
         value: Value::Amount { unit: name },
-        quality: if name.is_some() {
-            Quality::Good
-        } else {
-            Quality::Invalid
-        },
-        finding: if name.is_some() {
-            None
-        } else {
-            Some(Finding::NoName {
-                code: u32::from(unit),
-            })
-        },
+        quality,
     }
 }
 
 /// Values of a block of registers without a tree: each whole row with its judged value.
 ///
 /// Rows of which only a part lies in the block are left out. `data` are the words from `start`.
-pub fn values(
+#[must_use]
+pub fn values<'a>(
     map: &'static DeviceMap,
     table: Table,
     start: Address,
-    data: &[u8],
-) -> impl Iterator<Item = (&'static Row, Judged)> {
-    let count = u16::try_from(data.len().checked_div(2).unwrap_or(0)).unwrap_or(u16::MAX);
-    map.rows_in(table, start, count).filter_map(move |row| {
-        let ahead = usize::from(row.address.get().checked_sub(start.get())?).checked_mul(2)?;
-        let end = ahead.checked_add(usize::from(row.words).checked_mul(2)?)?;
-        Some((row, value(row, data.get(ahead..end)?)))
-    })
+    data: &'a [u8],
+) -> Values<'a> {
+    let count = u16::try_from(data.len() / 2).unwrap_or(u16::MAX);
+    let mut values = Values {
+        rows: map.slice_in(table, start, count),
+        data,
+    };
+    if let Some((first, rest)) = values.rows.split_first()
+        && first.address < start
+    {
+        let skip = usize::try_from(first.end())
+            .unwrap_or(0)
+            .saturating_sub(start.get().into());
+        values.data = data.get(skip.saturating_mul(2)..).unwrap_or(&[]);
+        values.rows = rest;
+    }
+    values
+}
+
+/// See [`values`].
+#[derive(Clone, Debug)]
+pub struct Values<'a> {
+    /// Rows without holes between them, the first of which begins where `data` does.
+    rows: &'static [&'static Row],
+    data: &'a [u8],
+}
+
+impl Iterator for Values<'_> {
+    type Item = (&'static Row, Judged);
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        let (row, rows) = self.rows.split_first()?;
+        let (bytes, data) = self.data.split_at_checked(usize::from(row.words) << 1)?;
+        self.rows = rows;
+        self.data = data;
+        Some((row, value(row, bytes)))
+    }
 }
 
 /// Decodes words from `start` into fields.
@@ -296,10 +335,8 @@ fn whole(out: &mut Decoded, row: &'static Row, mut data: Reader<'_>) {
     let place = data.here();
     let judged = value(row, data.rest());
     let id = out.push(None, Name::Row(row), judged.value, place);
-    if judged.quality != Quality::Good {
-        out.mark(id, judged.quality);
-    }
-    if let Some(finding) = judged.finding {
+    out.mark(id, judged.quality);
+    if let Some(finding) = finding(row, &judged, data.rest()) {
         out.problem(Problem::new(finding, place));
     }
     match (row.kind, judged.value) {
@@ -321,7 +358,7 @@ fn bits(out: &mut Decoded, row: &'static Row, parent: FieldId, raw: u32, data: R
         let Some((_, place)) = byte.u8() else {
             continue;
         };
-        let words = member.states.unwrap_or(ACTIVE);
+        let words = member.states.as_ref().unwrap_or(&ACTIVE);
         out.push(
             Some(parent),
             Name::Bit(row, member),
@@ -350,8 +387,11 @@ fn curve(out: &mut Decoded, row: &'static Row, parent: FieldId, data: &mut Reade
     let mut field = |def, value: Judged, place| {
         let id = out.push(Some(parent), Name::Within(row, def), value.value, place);
         out.mark(id, value.quality);
-        if let Some(finding) = value.finding {
-            out.problem(Problem::new(finding, place));
+        if value.quality == Quality::Invalid {
+            out.problem(Problem::new(
+                Finding::BadDigits { what: "BCD digits" },
+                place,
+            ));
         }
     };
     let Some((_, place)) = data.take(101) else {

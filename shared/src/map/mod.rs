@@ -65,11 +65,16 @@ impl DeviceMap {
     /// One binary search over all rows: this runs for every transaction of a capture.
     #[must_use]
     pub fn row_at(&self, table: Table, address: Address) -> Option<&'static Row> {
-        let after = self
-            .rows
-            .partition_point(|row| (row.table, row.address) <= (table, address));
-        let row = *self.rows.get(after.checked_sub(1)?)?;
+        let row = *self.rows.get(self.position(table, address)?)?;
         (row.table == table && row.contains(address)).then_some(row)
+    }
+
+    /// Position of the last row that begins at or before an address.
+    fn position(&self, table: Table, address: Address) -> Option<usize> {
+        let wanted = table.index() << 16 | u32::from(address.get());
+        self.keys
+            .partition_point(|key| *key <= wanted)
+            .checked_sub(1)
     }
 
     /// All rows of a table, by address.
@@ -91,17 +96,31 @@ impl DeviceMap {
         start: Address,
         count: u16,
     ) -> impl Iterator<Item = &'static Row> + use<> {
-        let first = u32::from(start.get());
+        self.slice_in(table, start, count).iter().copied()
+    }
+
+    /// Like [`rows_in`](Self::rows_in), as a slice.
+    fn slice_in(&self, table: Table, start: Address, count: u16) -> &'static [&'static Row] {
+        let first = table.index() << 16 | u32::from(start.get());
         let end = first.saturating_add(u32::from(count));
+        // The row before may reach into the range, or end before it, or be of another table.
         let before = self
-            .rows
-            .partition_point(|row| row.table < table || (row.table == table && row.end() <= first));
-        self.rows
+            .keys
+            .partition_point(|key| *key <= first)
+            .saturating_sub(1);
+        let rows = self.rows.get(before..).unwrap_or_default();
+        let beyond = self
+            .keys
             .get(before..)
             .unwrap_or_default()
             .iter()
-            .copied()
-            .take_while(move |row| row.table == table && u32::from(row.address.get()) < end)
+            .position(|key| *key >= end)
+            .unwrap_or(rows.len());
+        let rows = rows.get(..beyond).unwrap_or_default();
+        match rows.split_first() {
+            Some((row, rest)) if row.table != table || row.end() <= u32::from(start.get()) => rest,
+            _ => rows,
+        }
     }
 
     /// The row of a table with this key.

@@ -229,12 +229,21 @@ pub struct Set {
     pub bits: bool,
     /// The members, by value.
     pub members: &'static [Member],
+    /// For bits: all that have a name.
+    pub mask: u32,
 }
 
 impl Set {
     /// The member with this code or bit number.
     #[must_use]
     pub fn get(&self, value: u32) -> Option<&'static Member> {
+        // Most sets count from 0 without holes.
+        let guess = usize::try_from(value)
+            .ok()
+            .and_then(|at| self.members.get(at));
+        if guess.is_some_and(|m| u32::from(m.value) == value) {
+            return guess;
+        }
         self.members.iter().find(|m| u32::from(m.value) == value)
     }
 }
@@ -291,4 +300,6 @@ pub struct DeviceMap {
     pub rows: &'static [&'static Row],
     /// All readings of its manual, by id; rows name one, notes may mention others.
     pub readings: &'static [Reading],
+    /// For each row its table (0 to 3) and address as one number, close together for searching.
+    pub(super) keys: &'static [u32],
 }

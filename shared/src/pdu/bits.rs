@@ -44,7 +44,7 @@ impl<'a> Pdu<'a, '_> {
             0xFF00 | 0 => {
                 let value = Value::Bit {
                     on: word != 0,
-                    words: ON_OFF,
+                    words: &ON_OFF,
                 };
                 self.out.push(None, name, value, place);
             }
@@ -115,7 +115,7 @@ impl<'a> Pdu<'a, '_> {
                 };
                 let name = self.bit_name(table, address);
                 self.out
-                    .push(Some(parent), name, Value::Bit { on, words: ON_OFF }, place);
+                    .push(Some(parent), name, Value::Bit { on, words: &ON_OFF }, place);
                 done = done.saturating_add(1);
             }
         }

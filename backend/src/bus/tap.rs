@@ -1,0 +1,159 @@
+//! The bottom of every line: checks what goes out, records what goes either way.
+
+use super::gate;
+use super::recorder::Recorder;
+use shared::frame::Framing;
+use std::io;
+use std::pin::Pin;
+use std::task::{Context, Poll, ready};
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+
+/// A stream between us and the devices. Each frame must be handed over as a whole.
+#[derive(Debug)]
+pub struct Tap<T> {
+    inner: T,
+    framing: Framing,
+    recorder: Recorder,
+    /// Bytes of an admitted frame that the line has not taken yet.
+    admitted: usize,
+}
+
+impl<T> Tap<T> {
+    /// Puts the tap on a stream.
+    pub const fn new(inner: T, framing: Framing, recorder: Recorder) -> Self {
+        Self {
+            inner,
+            framing,
+            recorder,
+            admitted: 0,
+        }
+    }
+
+    /// What records this line.
+    pub const fn recorder(&self) -> &Recorder {
+        &self.recorder
+    }
+}
+
+impl<T: AsyncWrite + Unpin> AsyncWrite for Tap<T> {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        if self.admitted == 0 {
+            gate::admit(self.framing, bytes).map_err(refused)?;
+            // A second frame behind the first would not have been looked at.
+            if self.framing == Framing::Tcp && !is_one_frame(bytes) {
+                return Poll::Ready(Err(refused(gate::NotARead { function: 0 })));
+            }
+            self.admitted = bytes.len();
+        }
+        let bytes = bytes.get(..self.admitted).unwrap_or(bytes);
+        let written = ready!(Pin::new(&mut self.inner).poll_write(cx, bytes))?;
+        self.admitted = self.admitted.saturating_sub(written);
+        let sent = bytes.get(..written).unwrap_or(bytes);
+        self.recorder.sent(sent, self.admitted == 0);
+        Poll::Ready(Ok(written))
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.inner).poll_flush(cx)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.inner).poll_shutdown(cx)
+    }
+}
+
+impl<T: AsyncRead + Unpin> AsyncRead for Tap<T> {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        into: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        let before = into.filled().len();
+        ready!(Pin::new(&mut self.inner).poll_read(cx, into))?;
+        if let Some(new) = into.filled().get(before..)
+            && !new.is_empty()
+        {
+            self.recorder.received(new);
+        }
+        Poll::Ready(Ok(()))
+    }
+}
+
+fn refused(why: gate::NotARead) -> io::Error {
+    io::Error::new(io::ErrorKind::PermissionDenied, why)
+}
+
+/// True if the bytes are one Modbus TCP frame and nothing else.
+fn is_one_frame(bytes: &[u8]) -> bool {
+    let stated = bytes.get(4..6).and_then(|l| <[u8; 2]>::try_from(l).ok());
+    stated.is_some_and(|l| usize::from(u16::from_be_bytes(l)) + 6 == bytes.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::Clock;
+    use shared::encode::frame;
+    use tokio::io::{AsyncReadExt, AsyncWriteExt, duplex};
+    use tokio::sync::watch;
+
+    fn tap(framing: Framing) -> (Tap<tokio::io::DuplexStream>, tokio::io::DuplexStream) {
+        let (near, far) = duplex(1 << 16);
+        let recorder = Recorder::new("a", Clock::start(), watch::Sender::new(0));
+        (Tap::new(near, framing, recorder), far)
+    }
+
+    /// Counts bytes on the line for all 256 function codes: nothing of a write gets out.
+    #[tokio::test]
+    async fn nothing_but_reads_reaches_the_line() {
+        for framing in Framing::ALL {
+            let (mut tap, mut far) = tap(framing);
+            let mut expected = Vec::new();
+            for function in 0..=255_u8 {
+                let bytes = frame(framing, 7, 1, &[function, 0, 0, 0, 1]);
+                let read = matches!(function, 1..=4 | 7 | 8 | 11 | 12 | 17 | 20 | 24);
+                assert_eq!(tap.write_all(&bytes).await.is_ok(), read, "{function}");
+                if read {
+                    expected.extend_from_slice(&bytes);
+                }
+            }
+            let captures = tap.recorder().last();
+            drop(tap);
+            let mut seen = Vec::new();
+            far.read_to_end(&mut seen).await.unwrap();
+            assert_eq!(seen, expected, "{framing:?}");
+            assert_eq!(captures, 11);
+        }
+    }
+
+    /// A write can't hide behind a read.
+    #[tokio::test]
+    async fn one_frame_at_a_time() {
+        let read = frame(Framing::Tcp, 1, 1, &[3, 0, 0, 0, 1]);
+        let write = frame(Framing::Tcp, 2, 1, &[6, 0, 0, 0, 1]);
+        let (mut tap, mut far) = tap(Framing::Tcp);
+        assert!(tap.write_all(&[read, write].concat()).await.is_err());
+        drop(tap);
+        let mut seen = Vec::new();
+        far.read_to_end(&mut seen).await.unwrap();
+        assert!(seen.is_empty());
+    }
+
+    #[tokio::test]
+    async fn a_line_that_takes_little_at_a_time_gets_the_whole_frame() {
+        let (near, mut far) = duplex(3);
+        let recorder = Recorder::new("a", Clock::start(), watch::Sender::new(0));
+        let mut tap = Tap::new(near, Framing::Rtu, recorder);
+        let bytes = frame(Framing::Rtu, 0, 1, &[3, 0, 0, 0, 1]);
+        let expected = bytes.clone();
+        let write = tokio::spawn(async move { tap.write_all(&bytes).await });
+        let mut seen = vec![0; expected.len()];
+        far.read_exact(&mut seen).await.unwrap();
+        assert_eq!(seen, expected);
+        write.await.unwrap().unwrap();
+    }
+}

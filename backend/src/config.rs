@@ -1,0 +1,278 @@
+//! What is connected where: `valvescope.toml`.
+//!
+//! Every refusal names the file, the line and what to write instead.
+
+mod check;
+mod raw;
+#[cfg(test)]
+mod tests;
+
+use shared::device::Device;
+use shared::frame::Framing;
+use std::fmt;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Where the page is served if nothing else is said.
+pub const LISTEN: SocketAddr = SocketAddr::new(
+    std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST),
+    8080,
+);
+
+/// The file that is read if it is in the current directory.
+pub const FILE: &str = "valvescope.toml";
+
+/// The commented example.
+pub const EXAMPLE: &str = include_str!("../valvescope.example.toml");
+
+/// A checked configuration.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// Where to listen.
+    pub listen: SocketAddr,
+    /// Names besides those of loopback under which the page may be opened.
+    pub hosts: Vec<String>,
+    /// The buses.
+    pub buses: Vec<BusConfig>,
+    /// The devices on them.
+    pub devices: Vec<DeviceConfig>,
+}
+
+/// One bus.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BusConfig {
+    /// Its name, unique.
+    pub name: String,
+    /// Where it goes.
+    pub line: LineConfig,
+    /// How long a device may take to begin its answer.
+    pub timeout: Duration,
+    /// How often a read without a sound answer is repeated.
+    pub retries: u8,
+    /// Silence before a request that the devices need, where it is longer than the standard says.
+    pub turnaround: Duration,
+}
+
+/// Where a bus goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LineConfig {
+    /// A serial port.
+    Serial {
+        /// RTU or ASCII.
+        framing: Framing,
+        /// Path of the port: `/dev/ttyUSB0`.
+        port: String,
+        /// Bits a second.
+        baud: u32,
+        /// Data bits, parity and stop bits.
+        mode: Mode,
+    },
+    /// Modbus TCP.
+    Tcp {
+        /// Name or address with port.
+        host: String,
+    },
+    /// A gateway that passes Modbus RTU frames through unchanged.
+    RtuOverTcp {
+        /// Name or address with port.
+        host: String,
+    },
+    /// The built-in plant: its devices are simulated.
+    Simulator,
+}
+
+impl LineConfig {
+    /// How frames are marked off.
+    #[must_use]
+    pub const fn framing(&self) -> Framing {
+        match self {
+            Self::Serial { framing, .. } => *framing,
+            Self::Tcp { .. } => Framing::Tcp,
+            Self::RtuOverTcp { .. } | Self::Simulator => Framing::Rtu,
+        }
+    }
+}
+
+impl fmt::Display for LineConfig {
+    /// As people name it: `/dev/ttyUSB0 9600 8E1`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Serial {
+                port, baud, mode, ..
+            } => write!(f, "{port} {baud} {mode}"),
+            Self::Tcp { host } => f.write_str(host),
+            Self::RtuOverTcp { host } => write!(f, "{host}, RTU over TCP"),
+            Self::Simulator => f.write_str("built-in simulator"),
+        }
+    }
+}
+
+/// Parity of a serial line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    /// `N`.
+    None,
+    /// `E`.
+    Even,
+    /// `O`.
+    Odd,
+}
+
+/// Data bits, parity and stop bits of a serial line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mode {
+    /// 7 or 8.
+    pub data: u8,
+    /// The parity.
+    pub parity: Parity,
+    /// 1 or 2.
+    pub stop: u8,
+}
+
+impl Mode {
+    /// Reads `8E1`.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let [data, parity, stop] = <[u8; 3]>::try_from(text.as_bytes()).ok()?;
+        Some(Self {
+            data: match data {
+                b'7' => 7,
+                b'8' => 8,
+                _ => return None,
+            },
+            parity: match parity.to_ascii_uppercase() {
+                b'N' => Parity::None,
+                b'E' => Parity::Even,
+                b'O' => Parity::Odd,
+                _ => return None,
+            },
+            stop: match stop {
+                b'1' => 1,
+                b'2' => 2,
+                _ => return None,
+            },
+        })
+    }
+
+    /// Bits of one character on the wire, start bit included.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        let parity = if matches!(self.parity, Parity::None) { 0 } else { 1 };
+        1 + self.data as u32 + parity + self.stop as u32
+    }
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parity = match self.parity {
+            Parity::None => 'N',
+            Parity::Even => 'E',
+            Parity::Odd => 'O',
+        };
+        write!(f, "{}{parity}{}", self.data, self.stop)
+    }
+}
+
+/// One device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeviceConfig {
+    /// Its tag, unique.
+    pub tag: String,
+    /// Its kind.
+    pub device: Device,
+    /// Index of its bus.
+    pub bus: usize,
+    /// Its unit address.
+    pub unit: u8,
+    /// What it does in the plant.
+    pub description: String,
+}
+
+/// Why a configuration is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    /// The file can't be read.
+    #[error("can't read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Something in it is wrong.
+    #[error("{}, line {line}: {text}", path.display())]
+    Wrong {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// What is wrong and what to do.
+        text: String,
+    },
+}
+
+impl Config {
+    /// The configuration of the command line: the file named, else the one in the current
+    /// directory, else the simulated plant.
+    ///
+    /// # Errors
+    /// If a file can't be read or understood.
+    pub fn load(named: Option<&Path>) -> Result<Self, ConfigError> {
+        let path = match named {
+            Some(path) => path,
+            None if Path::new(FILE).is_file() => Path::new(FILE),
+            None => return Ok(Self::simulated()),
+        };
+        let text = std::fs::read_to_string(path).map_err(|source| ConfigError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads and checks the text of a file.
+    ///
+    /// # Errors
+    /// If anything in it is wrong; nothing is guessed.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigError> {
+        let wrong = |at: usize, what: String| ConfigError::Wrong {
+            path: path.to_owned(),
+            line: 1 + text.get(..at).map_or(0, |t| t.matches('\n').count()),
+            text: what,
+        };
+        let raw: raw::File = toml::from_str(text).map_err(|error| {
+            let at = error.span().map_or(0, |s| s.start);
+            wrong(at, error.message().replace('\n', "; "))
+        })?;
+        check::check(raw).map_err(|check::Wrong { at, text }| wrong(at, text))
+    }
+
+    /// What is served without a configuration: a plant of three valves that is alive.
+    #[must_use]
+    pub fn simulated() -> Self {
+        let device = |tag: &str, device, unit, description: &str| DeviceConfig {
+            tag: tag.into(),
+            device,
+            bus: 0,
+            unit,
+            description: description.into(),
+        };
+        Self {
+            listen: LISTEN,
+            hosts: Vec::new(),
+            buses: vec![BusConfig {
+                name: "Simulated plant".into(),
+                line: LineConfig::Simulator,
+                timeout: check::TIMEOUT,
+                retries: check::RETRIES,
+                turnaround: Duration::ZERO,
+            }],
+            devices: vec![
+                device("XV-101", Device::Icon3000v2, 1, "Feed inlet, isolating valve"),
+                device("FV-102", Device::Icon3000v2, 2, "Feed flow, control valve"),
+                device("XV-201", Device::Icon3000, 3, "Tank 2 outlet, isolating valve"),
+            ],
+        }
+    }
+}

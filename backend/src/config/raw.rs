@@ -1,0 +1,51 @@
+//! The file as it is written, with the places of its values.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+/// `valvescope.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct File {
+    #[serde(default)]
+    pub server: Server,
+    #[serde(default)]
+    pub bus: Vec<Spanned<Bus>>,
+    #[serde(default)]
+    pub device: Vec<Spanned<Device>>,
+}
+
+/// `[server]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Server {
+    pub listen: Option<Spanned<String>>,
+    #[serde(default)]
+    pub hosts: Vec<Spanned<String>>,
+}
+
+/// `[[bus]]`. Which keys belong to which kind is checked later, so that the message can say it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Bus {
+    pub name: Spanned<String>,
+    pub kind: Spanned<String>,
+    pub port: Option<Spanned<String>>,
+    pub baud: Option<Spanned<i64>>,
+    pub mode: Option<Spanned<String>>,
+    pub host: Option<Spanned<String>>,
+    pub timeout_ms: Option<Spanned<i64>>,
+    pub retries: Option<Spanned<i64>>,
+    pub turnaround_ms: Option<Spanned<i64>>,
+}
+
+/// `[[device]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Device {
+    pub tag: Spanned<String>,
+    pub kind: Spanned<String>,
+    pub bus: Spanned<String>,
+    pub unit: Spanned<i64>,
+    pub description: Option<Spanned<String>>,
+}
