@@ -1,9 +1,15 @@
 //! The page.
 
-use leptos::prelude::*;
+pub mod app;
+pub mod browser;
+pub mod components;
+pub mod decode_store;
+pub mod format;
+pub mod keys;
+pub mod pages;
+pub mod router;
+pub mod state;
+pub mod task;
+pub mod theme;
 
-/// The whole page.
-#[component]
-pub fn App() -> impl IntoView {
-    view! { <main><h1>"Valvescope"</h1></main> }
-}
+pub use app::App;

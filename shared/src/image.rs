@@ -151,3 +151,76 @@ impl Image {
         self.cells.is_empty()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::row::Model;
+
+    fn row(address: u16) -> &'static Row {
+        let map = Model::Icon3000v2.map();
+        map.row_at(Table::Holding, Address::new(address)).unwrap()
+    }
+
+    #[test]
+    fn answers_fill_the_image() {
+        let mut image = Image::new();
+        let request = [3, 0x0B, 0xBC, 0, 2];
+        let filled = image.absorb(&request, &[3, 4, 0, 0xF0, 0xFF, 0xF4], Micros::new(5));
+        assert_eq!(filled, Some((Table::Holding, Address::new(3004), 2)));
+        let seen = image.row(row(3004)).unwrap();
+        assert_eq!(seen.judged.value.to_string(), "24.0");
+        assert_eq!(
+            (seen.at, seen.changed),
+            (Micros::new(5), None),
+            "a first sight is no change"
+        );
+
+        image.absorb(&request, &[3, 4, 0, 0xF1, 0xFF, 0xF4], Micros::new(9));
+        assert_eq!(image.row(row(3004)).unwrap().changed, Some(Micros::new(9)));
+        assert_eq!(image.row(row(3005)).unwrap().changed, None);
+    }
+
+    #[test]
+    fn what_is_no_answer_changes_nothing() {
+        let mut image = Image::new();
+        let request = [3, 0x0B, 0xBC, 0, 2];
+        for response in [
+            &[0x83, 2][..],
+            &[3, 2, 0, 1],
+            &[4, 4, 0, 1, 0, 2],
+            &[3, 4, 0, 1],
+            &[],
+        ] {
+            assert_eq!(image.absorb(&request, response, Micros::new(1)), None);
+        }
+        assert!(image.is_empty());
+    }
+
+    /// A value is there when all its words are, and as old as the oldest of them.
+    #[test]
+    fn values_join_from_several_answers() {
+        let mut image = Image::new();
+        image.absorb(&[3, 0x0C, 0x4B, 0, 1], &[3, 2, 0, 1], Micros::new(3));
+        assert_eq!(image.row(row(3147)), None);
+        image.absorb(&[3, 0x0C, 0x4C, 0, 1], &[3, 2, 0, 2], Micros::new(8));
+        let seen = image.row(row(3147)).unwrap();
+        assert_eq!(seen.judged.value.to_string(), "65538");
+        assert_eq!(seen.at, Micros::new(3));
+    }
+
+    #[test]
+    fn bits_are_unpacked() {
+        let mut image = Image::new();
+        image.absorb(
+            &[2, 0, 8, 0, 10],
+            &[2, 2, 0b0000_0101, 0b10],
+            Micros::new(1),
+        );
+        let on = |a| image.cell(Table::Discrete, Address::new(a)).map(|c| c.word);
+        assert_eq!(
+            [8, 9, 10, 17, 18].map(on),
+            [Some(1), Some(0), Some(1), Some(1), None]
+        );
+    }
+}

@@ -4,7 +4,10 @@
 //! adds one. It looks at the bytes themselves.
 
 use shared::decode::pdu_of;
+use shared::encode;
 use shared::frame::Framing;
+use shared::frame::ascii::hex_pair;
+use shared::pdu::length::{Length, request};
 
 /// A frame that is not a read. It never leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -29,17 +32,54 @@ pub fn is_read(pdu: &[u8]) -> bool {
     }
 }
 
-/// Checks a whole frame before its first byte is sent.
+/// Checks a whole frame before its first byte is sent: it must be one read request, complete, and
+/// nothing else.
 ///
 /// # Errors
-/// If the frame is not a read, or so short that nothing can be said.
+/// If the bytes are anything else.
 pub fn admit(framing: Framing, frame: &[u8]) -> Result<(), NotARead> {
     let pdu = pdu_of(frame, framing).unwrap_or_default();
-    if is_read(&pdu) {
+    // Nothing may hide behind a read: the frame made from this PDU has to be this frame.
+    let unit = match framing {
+        Framing::Rtu => frame.first().copied(),
+        Framing::Ascii => frame.get(1..3).and_then(hex_pair),
+        Framing::Tcp => frame.get(6).copied(),
+    };
+    let transaction = match (framing, frame) {
+        (Framing::Tcp, [high, low, ..]) => u16::from_be_bytes([*high, *low]),
+        _ => 0,
+    };
+    let complete = request(&pdu) == Length::Exact(pdu.len());
+    let whole = unit.is_some_and(|u| encode::frame(framing, transaction, u, &pdu) == frame);
+    if is_read(&pdu) && complete && whole {
         return Ok(());
     }
     Err(NotARead {
         function: pdu.first().copied().unwrap_or(0),
+    })
+}
+
+/// A complete request of every function code: with the length that the standard gives it, and
+/// where it gives none, with four bytes of data.
+#[cfg(test)]
+pub(super) fn every_function() -> impl Iterator<Item = Vec<u8>> {
+    (0..=255_u8).map(|function| {
+        let mut pdu = match function {
+            15 | 16 => vec![function, 0, 0, 0, 1, 2, 0, 1],
+            20 | 21 => vec![function, 9, 6, 0, 2, 0, 0, 0, 1, 0, 1],
+            23 => vec![function, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 1],
+            43 => vec![function, 14, 1, 0],
+            _ => vec![function, 0, 0, 0, 1, 0, 0, 0, 0],
+        };
+        match function {
+            20 => pdu = vec![20, 7, 6, 0, 2, 0, 0, 0, 1],
+            _ => {
+                if let Length::Exact(len) = request(&pdu) {
+                    pdu.truncate(len);
+                }
+            }
+        }
+        pdu
     })
 }
 
@@ -48,16 +88,25 @@ mod tests {
     use super::*;
     use shared::encode::frame;
 
-    /// Every function code in every framing, with data that would make each a complete request.
+    /// Every function code in every framing, each as a complete request.
     #[test]
     fn only_reads_pass() {
-        let allowed = [1, 2, 3, 4, 7, 8, 11, 12, 17, 20, 24];
+        let allowed = [1, 2, 3, 4, 7, 8, 11, 12, 17, 20, 24, 43];
         for framing in Framing::ALL {
-            for function in 0..=255_u8 {
-                let pdu = [function, 0, 0, 0, 1];
+            for pdu in every_function() {
                 let passed = admit(framing, &frame(framing, 1, 1, &pdu)).is_ok();
-                assert_eq!(passed, allowed.contains(&function), "{framing:?} {function}");
+                assert_eq!(passed, allowed.contains(&pdu[0]), "{framing:?} {pdu:?}");
             }
+        }
+    }
+
+    #[test]
+    fn nothing_hides_behind_a_read() {
+        for framing in Framing::ALL {
+            let read = frame(framing, 1, 1, &[3, 0, 0, 0, 1]);
+            let write = frame(framing, 1, 1, &[6, 0, 0, 0, 1]);
+            assert!(admit(framing, &read).is_ok());
+            assert!(admit(framing, &[read, write].concat()).is_err());
         }
     }
 

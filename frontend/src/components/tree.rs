@@ -188,7 +188,7 @@ fn FieldRow(
             class:off=facts.value == shared::value::ACTIVE.0
             role="treeitem"
             tabindex=tab
-            aria-level=(line.depth + 1).to_string()
+            attr:aria-level=(line.depth + 1).to_string()
             aria-selected=move || is_selected().to_string()
             aria-expanded=move || (!line.leaf).then(|| open().to_string())
             data-testid="field-row"

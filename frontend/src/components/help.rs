@@ -1,0 +1,81 @@
+//! The list of keys.
+
+use leptos::html::Button;
+use leptos::prelude::*;
+
+use crate::components::icon::{Glyph, Icon};
+use crate::keys::on_action;
+use crate::state::shortcuts::{Action, KEYS};
+
+/// The keys as a table.
+#[component]
+pub fn KeyTable() -> impl IntoView {
+    view! {
+        <table class="keys">
+            <tbody>
+                {KEYS
+                    .map(|(keys, what)| {
+                        view! {
+                            <tr>
+                                <th scope="row">
+                                    {keys
+                                        .split(' ')
+                                        .filter(|k| !k.is_empty())
+                                        .map(|k| view! { <kbd>{k}</kbd> })
+                                        .collect::<Vec<_>>()}
+                                </th>
+                                <td>{what}</td>
+                            </tr>
+                        }
+                    })}
+            </tbody>
+        </table>
+    }
+}
+
+/// The keys in a window of their own, opened by `?` and closed by Escape.
+#[component]
+pub fn HelpOverlay() -> impl IntoView {
+    let (open, set_open) = signal(false);
+    let close = NodeRef::<Button>::new();
+    on_action(move |action| match action {
+        Action::Help => set_open.update(|o| *o = !*o),
+        Action::Close => set_open.set(false),
+        _ => {}
+    });
+    Effect::new(move |_| {
+        if open.get()
+            && let Some(button) = close.get()
+        {
+            // Fails only without a window.
+            let _infallible = button.focus();
+        }
+    });
+    view! {
+        <Show when=move || open.get()>
+            <div class="overlay" on:click=move |_| set_open.set(false)>
+                <div
+                    class="dialog"
+                    role="dialog"
+                    aria-modal="true"
+                    aria-label="Keys"
+                    data-testid="help"
+                    on:click=|event| event.stop_propagation()
+                >
+                    <header>
+                        <h2>"Keys"</h2>
+                        <button
+                            class="icon-button"
+                            aria-label="Close"
+                            node_ref=close
+                            on:click=move |_| set_open.set(false)
+                        >
+                            <Icon glyph=Glyph::Close size=20/>
+                        </button>
+                    </header>
+                    <KeyTable/>
+                </div>
+            </div>
+        </Show>
+    }
+}

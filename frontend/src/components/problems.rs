@@ -1,0 +1,219 @@
+//! The problems of a whole capture, each a way to its bytes.
+
+use std::sync::Arc;
+
+use leptos::prelude::*;
+use shared::place::Place;
+use shared::problem::Problem;
+use shared::text::TextProblem;
+
+use crate::components::frame_detail::{SeverityMark, place_words};
+use crate::components::windowed::{DrawRow, Windowed};
+use crate::decode_store::DecodeStore;
+use crate::format::count;
+use crate::state::findings::Item;
+use crate::state::selection::Selection;
+use crate::state::work::Shown;
+
+/// Rows shown at once.
+const ROWS: usize = 4;
+
+/// Height of a row in pixels.
+const ROW: f64 = 28.0;
+
+/// One line of the strip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Entry {
+    Text(TextProblem),
+    Frame(Item),
+}
+
+/// A strip with all errors and warnings, notes on demand; a click jumps to frame and bytes.
+#[component]
+pub fn ProblemStrip() -> impl IntoView {
+    let store: DecodeStore = expect_context();
+    let (with_notes, set_with_notes) = signal(false);
+    let entries = Memo::new(move |_| {
+        let text = store.work.with(|w| {
+            w.as_ref()
+                .map_or_else(Vec::new, |w| w.text_problems.clone())
+        });
+        let mut entries: Vec<_> = text.into_iter().map(Entry::Text).collect();
+        store.findings.with(|f| {
+            entries.extend(f.items.iter().copied().map(Entry::Frame));
+            if with_notes.get() {
+                entries.extend(f.notes.iter().copied().map(Entry::Frame));
+            }
+        });
+        Arc::new(entries)
+    });
+    let total = Memo::new(move |_| {
+        let text = store.work.with(|w| {
+            w.as_ref()
+                .map_or(0, |w| w.text_problems.len() + w.more_text_problems)
+        });
+        let text = u64::try_from(text).unwrap_or(u64::MAX);
+        let [notes, warnings, errors] = store.findings.with(|f| f.counts.map(u64::from));
+        (errors + text, warnings, notes)
+    });
+    let epoch = RwSignal::new(0_u32);
+    Effect::new(move |_| {
+        entries.track();
+        epoch.update(|e| *e = e.wrapping_add(1));
+    });
+    let cursor = RwSignal::new(None);
+    Effect::new(move |_| {
+        let entry = cursor.get().and_then(|at| entries.with_untracked(|e| e.get(at).copied()));
+        if let Some(entry) = entry {
+            jump(store, entry);
+        }
+    });
+    let draw: DrawRow = Arc::new(move |at: usize| {
+        entries
+            .with_untracked(|e| e.get(at).copied())
+            .map(|entry| view! { <ProblemRow entry=entry/> })
+            .into_any()
+    });
+    let draw = StoredValue::new(draw);
+    let shown = move || entries.with(|e| e.len().min(ROWS));
+    let words = move || {
+        let (errors, warnings, _) = total.get();
+        format!("{}, {}", count(errors, "error"), count(warnings, "warning"))
+    };
+    let left_out = move || {
+        let (errors, warnings, _) = total.get();
+        let listed = entries.with(|e| u64::try_from(e.len()).unwrap_or(u64::MAX));
+        let all = errors + warnings;
+        (all > listed).then(|| format!(", the first {} are listed", crate::format::thousands(listed)))
+    };
+    let notes = move || {
+        let (.., notes) = total.get();
+        (notes > 0).then(|| {
+            view! {
+                <label class="check">
+                    <input
+                        type="checkbox"
+                        prop:checked=with_notes
+                        on:change=move |e| set_with_notes.set(event_target_checked(&e))
+                    />
+                    {count(notes, "note")}
+                </label>
+            }
+        })
+    };
+    let any = move || total.get() != (0, 0, 0);
+    let listed = Memo::new(move |_| shown() > 0);
+    view! {
+        <Show when=any>
+            <section class="problem-strip" aria-label="Problems">
+                <header>
+                    <span role="status" data-testid="problem-count">
+                        {words} {left_out}
+                    </span>
+                    {notes}
+                </header>
+                <Show when=move || listed.get()>
+                    <div
+                        class="problem-list"
+                        style:height=move || {
+                            let rows = u32::try_from(shown()).unwrap_or(0);
+                            format!("{}px", f64::from(rows) * ROW)
+                        }
+                    >
+                        <Windowed
+                            label="Problems"
+                            count=Signal::derive(move || entries.with(|e| e.len()))
+                            row_height=Signal::stored(ROW)
+                            epoch=epoch
+                            cursor=cursor
+                            draw=draw.get_value()
+                            testid="problem-list"
+                        />
+                    </div>
+                </Show>
+            </section>
+        </Show>
+    }
+}
+
+#[component]
+fn ProblemRow(
+    /// What it is about.
+    entry: Entry,
+) -> impl IntoView {
+    let (problem, place) = match entry {
+        Entry::Text(text) => (
+            Problem::new(text.finding, Place::default()),
+            format!("line {}, column {}", text.line, text.column),
+        ),
+        Entry::Frame(item) => (
+            item.problem,
+            format!("#{} · {}", item.frame, place_words(&item.problem)),
+        ),
+    };
+    view! {
+        <div class="problem" data-testid="problem" data-code=problem.code()>
+            <SeverityMark severity=problem.severity()/>
+            <span class="where">{place}</span>
+            <span class="problem-words" title=problem.to_string()>{problem.to_string()}</span>
+        </div>
+    }
+}
+
+fn jump(store: DecodeStore, entry: Entry) {
+    match entry {
+        Entry::Frame(item) => {
+            let device = store.device.get_untracked();
+            let shown = store.work.with_untracked(|w| {
+                let work = w.as_ref()?;
+                Shown::of(&work.session, item.frame, work.device(device))
+            });
+            if let Some(shown) = shown {
+                let selection = Selection::problem(&shown.decoded, item.problem.place);
+                store.jump(item.frame, selection);
+            }
+        }
+        Entry::Text(text) => {
+            let frame = store.work.with_untracked(|w| {
+                let session = &w.as_ref()?.session;
+                frame_at(session.len(), text.offset, |i| session.frame(i).map(|f| f.end()))
+            });
+            if let Some(frame) = frame {
+                store.cursor.set(usize::try_from(frame).ok());
+            }
+        }
+    }
+}
+
+/// The frame that holds a stream offset, or the last one.
+fn frame_at(len: u32, offset: u64, end: impl Fn(u32) -> Option<u64>) -> Option<u32> {
+    let (mut low, mut high) = (0, len.checked_sub(1)?);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if end(middle)? <= offset {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    Some(low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_in_the_text_leads_to_its_frame() {
+        let ends = [8_u64, 19, 20];
+        let at = |offset| {
+            frame_at(3, offset, |i| {
+                ends.get(usize::try_from(i).unwrap()).copied()
+            })
+        };
+        assert_eq!(at(0), Some(0));
+        assert_eq!(at(8), Some(1));
+        assert_eq!(at(99), Some(2));
+        assert_eq!(frame_at(0, 0, |_| None), None);
+    }
+}

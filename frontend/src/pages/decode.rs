@@ -1,0 +1,184 @@
+//! What do these bytes say?
+
+use std::sync::Arc;
+
+use leptos::prelude::*;
+use shared::tree::Decoded;
+
+use crate::browser::{Narrow, focus};
+use crate::components::frame_detail::FrameDetail;
+use crate::components::frame_list::{FrameListHead, FrameRow};
+use crate::components::icon::{Glyph, Icon};
+use crate::components::input::DecodeInput;
+use crate::components::problems::ProblemStrip;
+use crate::components::windowed::Windowed;
+use crate::decode_store::DecodeStore;
+use crate::format::thousands;
+use crate::keys::on_action;
+use crate::router::Router;
+use crate::state::samples::{SAMPLES, by_key};
+use crate::state::shortcuts::Action;
+use crate::state::summary::summary;
+use crate::state::work::Shown;
+
+/// Bytes to meaning, without a network.
+#[component]
+pub fn DecodePage() -> impl IntoView {
+    let store: DecodeStore = expect_context();
+    let Narrow(narrow) = expect_context();
+    let router = Router::get();
+    let (in_detail, set_in_detail) = signal(false);
+
+    // A link may name a sample, and the address names the open one.
+    let wanted = router.peek().get("sample").and_then(by_key);
+    if let Some(sample) = wanted
+        && store.sample.get_untracked() != Some(sample.key)
+    {
+        store.open_sample(sample);
+    }
+    Effect::new(move |_| router.set("sample", store.sample.get().unwrap_or_default()));
+
+    let count = Memo::new(move |_| {
+        store.epoch.track();
+        store.work.with(|w| {
+            w.as_ref()
+                .map_or(0, |w| usize::try_from(w.session.len()).unwrap_or(0))
+        })
+    });
+    let shown = Memo::new(move |_| {
+        let index = u32::try_from(store.cursor.get()?).ok()?;
+        let device = store.device.get();
+        store.work.with(|w| {
+            let work = w.as_ref()?;
+            Shown::of(&work.session, index, work.device(device))
+        })
+    });
+    let go = Callback::new(move |index: u32| {
+        store.cursor.set(usize::try_from(index).ok());
+    });
+    let scratch = StoredValue::new(Decoded::default());
+    let draw = Arc::new(move |at: usize| {
+        let index = u32::try_from(at).unwrap_or(u32::MAX);
+        let device = store.device.get_untracked();
+        let summary = store.work.with_untracked(|w| {
+            let work = w.as_ref()?;
+            let context = work.context(device);
+            scratch
+                .try_update_value(|s| summary(&work.session, index, &context, s))
+                .flatten()
+        });
+        summary
+            .map(|summary| {
+                let offset = thousands(summary.frame.offset);
+                view! {
+                    <div class="open-detail" on:click=move |_| set_in_detail.set(true)>
+                        <FrameRow index=index summary=summary second=offset latency=None on_pair=go/>
+                    </div>
+                }
+            })
+            .into_any()
+    });
+    on_action(move |action| match action {
+        Action::Next | Action::Previous => {
+            let count = count.get_untracked();
+            let key = if action == Action::Next { "j" } else { "k" };
+            let next = crate::state::window::moved(key, store.cursor.get_untracked(), count, 1);
+            if next.is_some() {
+                store.cursor.set(next);
+            }
+        }
+        Action::Find => focus("[data-find]"),
+        Action::Close => {
+            store.selected.set(None);
+            set_in_detail.set(false);
+        }
+        _ => {}
+    });
+    // A jump from the strip opens the detail.
+    Effect::new(move |_| {
+        if store.selected.get().is_some() {
+            set_in_detail.set(true);
+        }
+    });
+
+    let has_frames = move || count.get() > 0;
+    let nothing = move || store.work.with(Option::is_none) && store.progress.with(Option::is_none);
+    let empty = move || store.work.with(Option::is_some) && count.get() == 0;
+    view! {
+        <div
+            class="page decode"
+            class:show-detail=move || narrow.get() && in_detail.get()
+            data-testid="page-decode"
+        >
+            <h1 class="hidden-title">"Decode"</h1>
+            <DecodeInput/>
+            <ProblemStrip/>
+            <Show when=nothing>
+                <Welcome/>
+            </Show>
+            <Show when=empty>
+                <p class="empty">
+                    "No bytes in this. Write bytes as two hexadecimal digits, such as 01 03 00 00 00 02."
+                </p>
+            </Show>
+            <Show when=has_frames>
+                <div class="panes">
+                    <section class="pane list-pane" aria-label="Frames">
+                        <FrameListHead second="Offset"/>
+                        <Windowed
+                            label="Frames"
+                            count=count
+                            row_height=Signal::derive(move || if narrow.get() { 56.0 } else { 28.0 })
+                            epoch=store.epoch
+                            cursor=store.cursor
+                            draw=draw.clone()
+                            on_enter=Callback::new(move |_| set_in_detail.set(true))
+                            testid="frame-list"
+                        />
+                    </section>
+                    <section class="pane detail-pane" aria-label="Frame">
+                        <button class="button back" on:click=move |_| set_in_detail.set(false)>
+                            <Icon glyph=Glyph::Left/>
+                            "Frames"
+                        </button>
+                        <FrameDetail shown=shown selected=store.selected on_pair=go/>
+                    </section>
+                </div>
+            </Show>
+        </div>
+    }
+}
+
+/// What to do first.
+#[component]
+fn Welcome() -> impl IntoView {
+    let store: DecodeStore = expect_context();
+    view! {
+        <div class="welcome">
+            <p>
+                "Paste the bytes of a bus above, or drop a capture anywhere. Everything is decoded here; nothing leaves this page."
+            </p>
+            <h2>"Or try one"</h2>
+            <ul class="sample-list">
+                {SAMPLES
+                    .iter()
+                    .map(|sample| {
+                        view! {
+                            <li>
+                                <button
+                                    class="sample"
+                                    data-testid="sample-button"
+                                    data-sample=sample.key
+                                    on:click=move |_| store.open_sample(sample)
+                                >
+                                    <b>{sample.title}</b>
+                                    <span class="quiet">{sample.about}</span>
+                                </button>
+                            </li>
+                        }
+                    })
+                    .collect::<Vec<_>>()}
+            </ul>
+        </div>
+    }
+}

@@ -1,0 +1,4 @@
+//! The screens, put together from components.
+
+pub mod decode;
+pub mod settings;
