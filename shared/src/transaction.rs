@@ -21,22 +21,23 @@ const DEPTH: usize = 16;
 /// apart by their transaction identifier.
 #[derive(Clone, Debug)]
 pub struct Pairing {
-    open: [Option<Open>; DEPTH],
+    serial: Option<Open>,
+    tcp: [Option<Open>; DEPTH],
     next: usize,
 }
 
 impl Pairing {
     pub(crate) const fn new() -> Self {
         Self {
-            open: [None; DEPTH],
+            serial: None,
+            tcp: [None; DEPTH],
             next: 0,
         }
     }
 
-    /// True if an answer to this function of this unit is due.
-    #[inline]
+    /// On Modbus TCP: true if an answer to this request is due.
     pub(crate) fn expects(&self, transaction: u16, unit: u8, function: u8) -> bool {
-        self.open
+        self.tcp
             .iter()
             .flatten()
             .any(|o| o.matches(transaction, unit, function))
@@ -45,9 +46,8 @@ impl Pairing {
     /// On a serial line: true if an answer to this function of this unit is due.
     #[inline]
     pub(crate) fn expects_serial(&self, unit: u8, function: u8) -> bool {
-        self.open
-            .first()
-            .and_then(Option::as_ref)
+        self.serial
+            .as_ref()
             .is_some_and(|o| o.matches(0, unit, function))
     }
 
@@ -55,11 +55,6 @@ impl Pairing {
     #[inline]
     pub(crate) fn settle(&mut self, found: &Found, framing: Framing, index: u32) -> Option<u32> {
         match found.role {
-            // Nobody answers a broadcast.
-            Role::Request if found.unit == 0 && framing != Framing::Tcp => {
-                self.clear();
-                None
-            }
             Role::Request => {
                 let open = Open {
                     transaction: found.transaction,
@@ -67,33 +62,42 @@ impl Pairing {
                     function: found.function,
                     index,
                 };
-                let at = if framing == Framing::Tcp {
-                    self.next
+                if framing == Framing::Tcp {
+                    self.note_tcp(open);
                 } else {
-                    0
-                };
-                if let Some(slot) = self.open.get_mut(at) {
-                    *slot = Some(open);
+                    // Nobody answers a broadcast.
+                    self.serial = (found.unit != 0).then_some(open);
                 }
-                self.next = at.wrapping_add(1).checked_rem(DEPTH).unwrap_or(0);
                 None
             }
             Role::Response | Role::Exception => {
-                let slot = self.open.iter_mut().find(|o| {
-                    o.is_some_and(|o| o.matches(found.transaction, found.unit, found.function))
-                })?;
+                let slot = if framing == Framing::Tcp {
+                    self.tcp
+                        .iter_mut()
+                        .find(|o| o.is_some_and(|o| o.answers(found)))?
+                } else {
+                    Some(&mut self.serial).filter(|o| o.is_some_and(|o| o.answers(found)))?
+                };
                 slot.take().map(|o| o.index)
             }
             Role::Unknown | Role::Noise => None,
         }
     }
 
-    fn clear(&mut self) {
-        self.open = [None; DEPTH];
+    /// The oldest of sixteen requests without an answer makes room.
+    fn note_tcp(&mut self, open: Open) {
+        if let Some(slot) = self.tcp.get_mut(self.next) {
+            *slot = Some(open);
+        }
+        self.next = self.next.wrapping_add(1).checked_rem(DEPTH).unwrap_or(0);
     }
 }
 
 impl Open {
+    const fn answers(&self, found: &Found) -> bool {
+        self.matches(found.transaction, found.unit, found.function)
+    }
+
     const fn matches(&self, transaction: u16, unit: u8, function: u8) -> bool {
         self.transaction == transaction && self.unit == unit && self.function == function & 0x7F
     }

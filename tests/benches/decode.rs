@@ -105,7 +105,7 @@ fn mapped(load: &Load, index: &mut Vec<Frame>) -> u64 {
         let start = Address::new(u16::from_be_bytes([request[2], request[3]]));
         let data = bytes(frame);
         for (row, judged) in values(map, Table::Holding, start, &data[3..data.len() - 2]) {
-            black_box((row, judged));
+            black_box(&(row, judged));
             count += 1;
         }
     }

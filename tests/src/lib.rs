@@ -15,6 +15,8 @@ pub mod browser;
 pub mod golden;
 pub mod load;
 #[cfg(all(feature = "peers", not(target_arch = "wasm32")))]
+pub mod page;
+#[cfg(all(feature = "peers", not(target_arch = "wasm32")))]
 pub mod peers;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod process;

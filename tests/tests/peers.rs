@@ -1,14 +1,298 @@
-//! Other implementations of Modbus as judges of ours.
+//! Other implementations of Modbus as judges of ours: pymodbus and mbpoll (libmodbus) read our
+//! simulated actuator, our backend reads a device of pymodbus.
 
-use tests::peers;
+use std::net::TcpListener;
+use std::path::PathBuf;
+use std::process::Command;
 
-/// Both peers are there and start.
+use serde_json::{Value, json};
+use shared::frame::Framing;
+use shared::proto::{Block, Outcome, TableName};
+use tests::page::Page;
+use tests::peers::{mbpoll, python};
+use tests::process::Process;
+use tests::server::{Server, binary};
+
+/// A script of ours that runs a peer.
+fn script(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("peers")
+        .join(name)
+}
+
+/// A port that was free a moment ago.
+fn free_port() -> u16 {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("loopback");
+    listener.local_addr().expect("an address").port()
+}
+
+/// Our simulator on Modbus TCP.
+fn simulator() -> (Process, u16) {
+    let mut command = Command::new(binary());
+    command.args(["simulate", "--listen", "127.0.0.1:0"]);
+    Process::start(&mut command, "build the backend first", |line| {
+        line.split_once("listening on 127.0.0.1:")?
+            .1
+            .trim()
+            .parse()
+            .ok()
+    })
+}
+
+/// Two pseudo terminals that are connected like the ends of a cable.
+fn cable() -> (Process, String, String) {
+    let (process, (one, other)) =
+        Process::start(python().arg(script("ptys.py")), "see the peers", |line| {
+            let mut words = line.strip_prefix("ptys ")?.split(' ');
+            Some((words.next()?.to_owned(), words.next()?.to_owned()))
+        });
+    (process, one, other)
+}
+
+/// Our simulator on a serial line.
+fn serial_simulator(path: &str) -> Process {
+    let mut command = Command::new(binary());
+    command.args(["simulate", "--serial", path, "--baud", "38400"]);
+    Process::start(&mut command, "build the backend first", |line| {
+        line.contains(path).then_some(())
+    })
+    .0
+}
+
+/// What pymodbus got for its questions.
+fn pymodbus_asks(kind: &str, place: &str) -> Vec<Value> {
+    let output = python()
+        .arg(script("client.py"))
+        .args([kind, place])
+        .output()
+        .expect("python starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    text.lines()
+        .map(|l| serde_json::from_str(l).expect("JSON lines"))
+        .collect()
+}
+
+/// Checks the answers of the simulated actuator against VCIOM-16345-EN, sections 7 and 8.
+fn check_answers(answers: &[Value]) {
+    let of = |ask: &str| {
+        let found = answers.iter().find(|a| a["ask"] == ask);
+        found
+            .unwrap_or_else(|| panic!("nothing about {ask}"))
+            .clone()
+    };
+    let registers = |ask: &str| -> Vec<u64> {
+        let answer = of(ask);
+        let words = answer["registers"]
+            .as_array()
+            .unwrap_or_else(|| panic!("{answer}"));
+        words.iter().filter_map(Value::as_u64).collect()
+    };
+    // Table 5: "always" values.
+    assert_eq!(registers("actuator id"), [0x9000, 0x0001]);
+    assert_eq!(registers("identifier"), [0x9000]);
+    let position = registers("position")[0];
+    assert!(position <= 1000, "position {position}");
+    // It moves; in the moment between the two questions not by more than a tenth of the stroke.
+    let input = registers("input position")[0];
+    assert!(
+        position.abs_diff(input) <= 100,
+        "{position} and {input} are the same position"
+    );
+    // Notes 2 and 3: BCD date 0xDDMM 0xYYYY, time 0x00HH 0xMMSS.
+    let clock = registers("clock");
+    let digits = |word: u64| (0..4).all(|n| (word >> (4 * n)) & 0xF < 10);
+    assert!(clock.iter().all(|w| digits(*w)), "{clock:x?}");
+    assert!(
+        (0x2024..0x2100).contains(&clock[1]),
+        "the year {:x}",
+        clock[1]
+    );
+    assert!(clock[2] <= 0x23, "the hour {:x}", clock[2]);
+    assert_eq!(registers("whole block").len(), 125);
+    assert_eq!(registers("last register").len(), 1);
+    // Note 13: always read as 0.
+    assert_eq!(registers("password"), [0, 0, 0, 0]);
+    assert_eq!(registers("curve").len(), 64);
+    assert_eq!(
+        of("coils")["bits"].as_array().map(Vec::len),
+        Some(16),
+        "11 coils in two bytes"
+    );
+    assert_eq!(of("discrete")["bits"].as_array().map(Vec::len), Some(32));
+    // Section 8: exceptions.
+    for (ask, code) in [
+        ("beyond the last", 2),
+        ("beyond the last input", 2),
+        ("too many coils", 3),
+        ("beyond the last coil", 2),
+        ("too many discrete", 3),
+        ("coil that is not there", 2),
+        ("register out of range", 3),
+        ("mask write", 1),
+        ("restart", 1),
+    ] {
+        assert_eq!(of(ask)["exception"], json!(code), "{ask}: {}", of(ask));
+    }
+    // Section 8.7.1: the echo.
+    let echo = of("echo").to_string();
+    assert!(
+        echo.contains("[165,182]") || echo.contains("[165, 182]") || echo.contains("42422"),
+        "{echo}"
+    );
+}
+
 #[test]
-fn the_peers_start() {
-    let version = peers::python()
-        .args(["-c", "import pymodbus; print(pymodbus.__version__)"])
-        .output();
-    assert!(version.expect("python starts").status.success());
-    let help = peers::mbpoll().arg("-V").output().expect("mbpoll starts");
-    assert!(String::from_utf8_lossy(&help.stdout).contains("mbpoll"));
+fn pymodbus_reads_the_simulator_over_tcp() {
+    let (_simulator, port) = simulator();
+    check_answers(&pymodbus_asks("tcp", &port.to_string()));
+}
+
+#[test]
+fn pymodbus_reads_the_simulator_over_a_serial_line() {
+    let (_cable, ours, theirs) = cable();
+    let _simulator = serial_simulator(&ours);
+    check_answers(&pymodbus_asks("rtu", &theirs));
+}
+
+/// mbpoll counts registers from 1: number 45 is address 44.
+#[test]
+fn mbpoll_reads_the_simulator() {
+    let (_simulator, port) = simulator();
+    let read = |args: &[&str]| {
+        let port = port.to_string();
+        let mut command = mbpoll();
+        command
+            .args(["-m", "tcp", "-p", &port, "-a", "1", "-1"])
+            .args(args)
+            .arg("127.0.0.1");
+        let output = command.output().expect("mbpoll starts");
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(
+            output.status.success(),
+            "{text}{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        text
+    };
+    let text = read(&["-t", "4:hex", "-r", "45", "-c", "2"]);
+    assert!(text.contains("0x9000") && text.contains("0x0001"), "{text}");
+    assert!(read(&["-t", "3", "-r", "1", "-c", "1"]).contains("[1]:"));
+    assert!(read(&["-t", "1", "-r", "1", "-c", "32"]).contains("[32]:"));
+    assert!(read(&["-t", "0", "-r", "1", "-c", "11"]).contains("[11]:"));
+}
+
+#[test]
+fn mbpoll_reads_the_simulator_over_a_serial_line() {
+    let (_cable, ours, theirs) = cable();
+    let _simulator = serial_simulator(&ours);
+    let mut command = mbpoll();
+    command.args(["-m", "rtu", "-b", "38400", "-P", "none", "-a", "1", "-1"]);
+    command
+        .args(["-t", "4:hex", "-r", "3001", "-c", "1"])
+        .arg(&theirs);
+    let output = command.output().expect("mbpoll starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        text.contains("0x9000"),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+/// A device of pymodbus, and a backend that has it on a bus of this kind.
+fn backend_beside(kind: &str, place: &str, bus: &str) -> (Process, Server, PathBuf) {
+    let mut command = python();
+    command.arg(script("server.py")).args([kind, place]);
+    let (device, ()) = Process::start(&mut command, "see the peers", |line| {
+        (line == "ready").then_some(())
+    });
+    let config = format!(
+        "[[bus]]\nname = \"peer\"\n{bus}\n\n[[device]]\ntag = \"P-7\"\nkind = \"icon3000v2\"\n\
+         bus = \"peer\"\nunit = 7\n"
+    );
+    let file = std::env::temp_dir().join(format!(
+        "valvescope-peer-{}-{kind}.toml",
+        std::process::id()
+    ));
+    std::fs::write(&file, config).expect("a temporary file");
+    let server = Server::start(&["--config", file.to_str().expect("a path in UTF-8")]);
+    (device, server, file)
+}
+
+/// Reads blocks of all four tables and compares them with what the peer was told to hold.
+fn check_reads(server: &Server, framing: Framing) {
+    let mut page = Page::open(server.address(), "peer", framing);
+    let block = |table, start, count| Block {
+        table,
+        start,
+        count,
+    };
+    let mut words = |table, start: u16, count: u16, factor: u16, offset: u16| {
+        assert_eq!(page.read("P-7", block(table, start, count)).0, Outcome::Ok);
+        let want: Vec<u8> = (start..start + count)
+            .flat_map(|a| a.wrapping_mul(factor).wrapping_add(offset).to_be_bytes())
+            .collect();
+        assert_eq!(page.last_data(), Some(want), "{table:?} {start}+{count}");
+    };
+    words(TableName::Holding, 3004, 1, 31, 7);
+    words(TableName::Holding, 3000, 125, 31, 7);
+    words(TableName::Holding, 3900, 89, 31, 7);
+    words(TableName::Input, 0, 100, 17, 3);
+    assert_eq!(
+        page.read("P-7", block(TableName::Coil, 0, 11)).0,
+        Outcome::Ok
+    );
+    assert_eq!(
+        page.last_data().map(|d| d[0]),
+        Some(0b0100_1001),
+        "coils 0, 3 and 6"
+    );
+    assert_eq!(
+        page.read("P-7", block(TableName::Discrete, 0, 32)).0,
+        Outcome::Ok
+    );
+    assert_eq!(
+        page.last_data().map(|d| d[0]),
+        Some(0b0010_0001),
+        "inputs 0 and 5"
+    );
+    // Beyond what the peer holds it answers with an exception, and the next read is good again.
+    let (outcome, text) = page.read("P-7", block(TableName::Holding, 3989, 1));
+    assert_eq!(outcome, Outcome::Exception, "{text}");
+    assert_eq!(
+        page.read("P-7", block(TableName::Holding, 3988, 1)).0,
+        Outcome::Ok
+    );
+}
+
+#[test]
+fn our_backend_reads_pymodbus_over_tcp() {
+    let port = free_port();
+    let bus = format!("kind = \"tcp\"\nhost = \"127.0.0.1:{port}\"");
+    let (_device, server, file) = backend_beside("tcp", &port.to_string(), &bus);
+    check_reads(&server, Framing::Tcp);
+    std::fs::remove_file(file).expect("it was there");
+}
+
+#[test]
+fn our_backend_reads_pymodbus_over_rtu() {
+    let (_cable, ours, theirs) = cable();
+    let bus = format!("kind = \"rtu\"\nport = \"{ours}\"\nbaud = 38400\nmode = \"8N1\"");
+    let (_device, server, file) = backend_beside("rtu", &theirs, &bus);
+    check_reads(&server, Framing::Rtu);
+    std::fs::remove_file(file).expect("it was there");
+}
+
+#[test]
+fn our_backend_reads_pymodbus_over_ascii() {
+    let (_cable, ours, theirs) = cable();
+    let bus = format!("kind = \"ascii\"\nport = \"{ours}\"\nbaud = 38400\nmode = \"8N1\"");
+    let (_device, server, file) = backend_beside("ascii", &theirs, &bus);
+    check_reads(&server, Framing::Ascii);
+    std::fs::remove_file(file).expect("it was there");
 }

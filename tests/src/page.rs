@@ -1,0 +1,144 @@
+//! A page without a browser: speaks the WebSocket protocol and decodes what comes.
+
+use std::net::{SocketAddr, TcpStream};
+use std::time::{Duration, Instant};
+
+use shared::capture::{Capture, Direction, Micros};
+use shared::frame::{Framing, Role};
+use shared::proto::{Block, Outcome, ToBackend, ToPage, VERSION, Way};
+use shared::session::Session;
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+/// How long an answer may take.
+const PATIENCE: Duration = Duration::from_secs(15);
+
+/// A connection to a backend, past its greeting.
+#[derive(Debug)]
+pub struct Page {
+    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    session: Session,
+}
+
+impl Page {
+    /// Connects, says hello, and subscribes to a bus.
+    ///
+    /// # Panics
+    ///
+    /// If the backend does not take the connection or speaks another version.
+    #[must_use]
+    pub fn open(address: SocketAddr, bus: &str, framing: Framing) -> Self {
+        let (socket, _) = tungstenite::connect(format!("ws://{address}/ws")).expect("a WebSocket");
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream
+                .set_read_timeout(Some(PATIENCE))
+                .expect("a time-out can be set");
+        }
+        let mut page = Self {
+            socket,
+            session: Session::new(framing),
+        };
+        page.send(&ToBackend::Hello { version: VERSION });
+        page.send(&ToBackend::Subscribe {
+            bus: bus.to_owned(),
+            after: None,
+        });
+        page
+    }
+
+    /// Sends a message.
+    ///
+    /// # Panics
+    ///
+    /// If the connection is gone.
+    pub fn send(&mut self, message: &ToBackend) {
+        let text = serde_json::to_string(message).expect("messages are JSON");
+        self.socket
+            .send(Message::text(text))
+            .expect("the backend listens");
+    }
+
+    /// The next message; captures go into the session first.
+    ///
+    /// # Panics
+    ///
+    /// If none comes in time, or if it is not of the protocol.
+    pub fn next(&mut self) -> ToPage {
+        loop {
+            let text = match self.socket.read().expect("a message in time") {
+                Message::Text(text) => text,
+                Message::Ping(_) | Message::Pong(_) => continue,
+                other => panic!("unexpected {other:?}"),
+            };
+            let message: ToPage = serde_json::from_str(&text).expect("a message of the protocol");
+            if let ToPage::Capture {
+                at_us,
+                way,
+                ends,
+                hex,
+                ..
+            } = &message
+            {
+                let bytes = shared::text::read_hex(hex.as_bytes()).0;
+                let direction = match way {
+                    Way::Tx => Direction::ToDevice,
+                    Way::Rx => Direction::FromDevice,
+                };
+                let at = Some(Micros::new(*at_us));
+                self.session.push(&Capture {
+                    bytes: &bytes,
+                    at,
+                    direction,
+                    ends: *ends,
+                });
+            }
+            return message;
+        }
+    }
+
+    /// Reads a block of a device; how it ended, in a word and in words.
+    ///
+    /// # Panics
+    ///
+    /// If no answer comes in time.
+    pub fn read(&mut self, device: &str, block: Block) -> (Outcome, String) {
+        const ID: u32 = 77;
+        self.send(&ToBackend::Read {
+            id: ID,
+            device: device.to_owned(),
+            block,
+        });
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            if let ToPage::Done {
+                id: ID,
+                outcome,
+                text,
+            } = self.next()
+            {
+                return (outcome, text);
+            }
+        }
+        panic!("no end of the read within {PATIENCE:?}");
+    }
+
+    /// Frames of the bus decoded so far.
+    #[must_use]
+    pub const fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The data bytes of the last sound response on the bus.
+    #[must_use]
+    pub fn last_data(&self) -> Option<Vec<u8>> {
+        let session = &self.session;
+        let sound = |i: &u32| {
+            session
+                .frame(*i)
+                .is_some_and(|f| f.role == Role::Response && !f.marks.is_damaged())
+        };
+        let index = (session.first()..session.len()).rev().find(sound)?;
+        let pdu = shared::decode::pdu_of(session.bytes(index)?, session.framing())?;
+        pdu.get(2..).map(<[u8]>::to_vec)
+    }
+}
