@@ -1,1 +1,456 @@
+//! Simulated ICON3000 and ICON3000v2 actuators: pure state machines that answer Modbus PDUs.
+//!
+//! A simulated actuator has no clock. Time comes in with [`Icon3000::advance`], and the same times
+//! give the same answers. It knows the facts of the map (ranges, levels, access), but shares no code
+//! with the decoder: the one does not prove the other.
+//!
+//! Without commands from the bus, a [`Programme`] keeps the valve alive: strokes, a seat that is
+//! tight now and then, a dip of the mains. A command from the bus ends the programme until a minute
+//! after the last command is over.
+//!
+//! # Passwords
+//!
+//! The real ones are not published. Here they are eight characters: `OBSERVER`, `USER0000`,
+//! `SERVICE0` and `MAKER000`; for the observer any will do (VCIOM-16345-EN, section 11).
 
+mod answer;
+mod clock;
+mod drive;
+mod files;
+mod log;
+mod publish;
+mod setup;
+mod store;
+#[cfg(test)]
+mod tests;
+mod write;
+
+use crate::capture::Micros;
+use crate::map::row::{Level, Model};
+use clock::Stamp;
+use drive::{Demand, Drive};
+use log::Log;
+use store::{Store, at};
+
+/// What an actuator does while nobody commands it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Programme {
+    /// Nothing.
+    Idle,
+    /// Opens and closes, with pauses.
+    Strokes,
+    /// Follows a signal of 4 to 20 mA that never stays long.
+    Modulating,
+}
+
+/// Time is simulated in steps of this length.
+const STEP_MS: u32 = 100;
+/// If nobody asked for longer than this, what happened before is left out.
+const LONGEST_MS: u64 = 3_600_000;
+/// The programme goes on so long after the last command from the bus.
+const RESUME_MS: u32 = 60_000;
+
+/// Numbers that the diagnostics return (VCIOM-16345-EN, section 8.7).
+#[derive(Clone, Copy, Debug, Default)]
+struct Counters {
+    bus_messages: u16,
+    messages: u16,
+    bus_errors: u16,
+    exceptions: u16,
+    busy: u16,
+    overruns: u16,
+}
+
+/// A simulated actuator.
+#[derive(Clone, Debug)]
+pub struct Icon3000 {
+    model: Model,
+    programme: Programme,
+    store: Store,
+    drive: Drive,
+    alarms: Log,
+    warnings: Log,
+    counters: Counters,
+    /// Level that is logged in; meant for ICON3000v2 only.
+    level: Level,
+    busy: bool,
+    /// True: FC 17 counts 84 bytes, as the standard wants; false: 82, as the manual prints.
+    full_report: bool,
+    /// Time of the first and the last `advance`.
+    first: Option<Micros>,
+    now: Micros,
+    /// Part of a step that is left over, in microseconds.
+    rest: u64,
+    /// Milliseconds simulated since power-up.
+    age_ms: u64,
+    /// The wall clock outside, in seconds since 1970.
+    wall: u64,
+    /// What the clock of the actuator was set to, against the one outside.
+    clock_offset: i64,
+    /// Milliseconds since the last command from the bus.
+    since_command_ms: u32,
+    /// Milliseconds since a message came, for the fail-safe function.
+    since_message_ms: u32,
+    /// Commands as the bits of HR 3006.
+    bits: u16,
+    /// The enumerated command of HR 3008.
+    command: u16,
+    pst: Pst,
+}
+
+/// A partial stroke test.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Pst {
+    #[default]
+    Off,
+    /// Moves to this position, in thousandths of a percent.
+    Away(u32),
+    /// Waits there for so many milliseconds.
+    Pause(u32),
+    /// Moves back to where it came from.
+    Back,
+}
+
+/// Bits of HR 3006 (VCIOM-16345-EN, table 5 and note 4).
+mod bit {
+    pub(super) const CLOSE: u16 = 1;
+    pub(super) const OPEN: u16 = 1 << 1;
+    pub(super) const STOP: u16 = 1 << 2;
+    pub(super) const ESD: u16 = 1 << 3;
+    pub(super) const POSITIONER: u16 = 1 << 4;
+    pub(super) const PST: u16 = 1 << 5;
+    pub(super) const ALL: u16 = 0x3F;
+}
+
+/// Values of HR 0 and 3008 (VCIOM-16345-EN, table 5, note 1).
+mod command {
+    pub(super) const NONE: u16 = 0;
+    pub(super) const CLOSE: u16 = 1;
+    pub(super) const OPEN: u16 = 2;
+    pub(super) const ESD: u16 = 3;
+    pub(super) const POSITIONER: u16 = 4;
+    pub(super) const PST: u16 = 5;
+    pub(super) const BASELINE_PST: u16 = 6;
+}
+
+impl Icon3000 {
+    /// An actuator that was just switched on: closed, in remote, with a plausible set-up.
+    #[must_use]
+    pub fn new(model: Model, tag: &str, programme: Programme) -> Self {
+        // Actuators of a plant do not all do the same at the same time.
+        let phase = tag
+            .bytes()
+            .fold(0_u64, |sum, b| sum.wrapping_mul(31).wrapping_add(b.into()));
+        let mut actuator = Self {
+            model,
+            programme,
+            store: setup::store(model, tag),
+            drive: Drive::new(),
+            alarms: Log::default(),
+            warnings: Log::default(),
+            counters: Counters::default(),
+            level: Level::User,
+            busy: false,
+            full_report: false,
+            first: None,
+            now: Micros::default(),
+            rest: 0,
+            age_ms: match programme {
+                Programme::Idle => 0,
+                _ => phase.checked_rem(97).unwrap_or(0).saturating_mul(1000),
+            },
+            wall: 0,
+            clock_offset: 0,
+            since_command_ms: RESUME_MS,
+            since_message_ms: 0,
+            bits: 0,
+            command: command::NONE,
+            pst: Pst::Off,
+        };
+        actuator.publish();
+        actuator
+    }
+
+    /// Which model it is.
+    #[must_use]
+    pub const fn model(&self) -> Model {
+        self.model
+    }
+
+    /// Position in tenths of a percent, 1000 is open.
+    #[must_use]
+    pub fn position(&self) -> u16 {
+        self.drive.tenths()
+    }
+
+    /// Makes it answer everything with "server device busy", or not.
+    pub const fn set_busy(&mut self, busy: bool) {
+        self.busy = busy;
+    }
+
+    /// Makes the byte count of FC 17 the one of the standard (84), or the printed one (82).
+    pub const fn set_full_report(&mut self, full: bool) {
+        self.full_report = full;
+    }
+
+    /// Lets time go on until `now`; `wall` is the wall clock in seconds since 1970 (UTC). The first
+    /// call switches the actuator on.
+    pub fn advance(&mut self, now: Micros, wall: u64) {
+        self.wall = wall;
+        if self.first.is_none() {
+            self.first = Some(now);
+            self.now = now;
+            self.power_up();
+        }
+        let passed = now.since(self.now).saturating_add(self.rest);
+        self.now = self.now.max(now);
+        let step = u64::from(STEP_MS).saturating_mul(1000);
+        let longest = LONGEST_MS.saturating_mul(1000);
+        let (steps, rest) = (
+            passed.min(longest).checked_div(step).unwrap_or(0),
+            passed.checked_rem(step).unwrap_or(0),
+        );
+        self.rest = rest;
+        for _ in 0..steps {
+            self.step();
+        }
+        self.publish();
+    }
+
+    /// The answer to a PDU that is addressed to this actuator; `None` if it stays silent.
+    #[must_use]
+    pub fn answer(&mut self, pdu: &[u8]) -> Option<Vec<u8>> {
+        self.since_message_ms = 0;
+        count(&mut self.counters.messages);
+        let response = self.respond(pdu)?;
+        if response.first().is_some_and(|f| *f >= 0x80) {
+            count(&mut self.counters.exceptions);
+        }
+        self.publish();
+        Some(response)
+    }
+
+    /// Carries out a PDU that is addressed to everybody. Only writes are allowed, and nobody answers.
+    pub fn broadcast(&mut self, pdu: &[u8]) {
+        self.since_message_ms = 0;
+        count(&mut self.counters.messages);
+        if pdu.first().is_some_and(|f| matches!(f, 5 | 6 | 15 | 16)) {
+            let _unsent = self.respond(pdu);
+            self.publish();
+        }
+    }
+
+    /// Counts a frame on the bus, whoever it is for. Damaged ones are counted apart.
+    pub const fn overheard(&mut self, sound: bool) {
+        if sound {
+            count(&mut self.counters.bus_messages);
+        } else {
+            count(&mut self.counters.bus_errors);
+        }
+    }
+
+    /// Time by the clock of the actuator.
+    fn stamp(&self) -> Stamp {
+        Stamp::at(self.wall.saturating_add_signed(self.clock_offset))
+    }
+
+    fn is_v2(&self) -> bool {
+        self.model >= Model::Icon3000v2
+    }
+
+    /// One step of time.
+    fn step(&mut self) {
+        self.age_ms = self.age_ms.saturating_add(STEP_MS.into());
+        self.since_command_ms = self.since_command_ms.saturating_add(STEP_MS);
+        self.since_message_ms = self.since_message_ms.saturating_add(STEP_MS);
+        if self.is_commanded() {
+            self.since_command_ms = 0;
+        }
+        self.mains();
+        self.test();
+        let demand = self.demand();
+        let dead_band = u32::from(self.store.get(at::DEAD_BAND)).saturating_mul(100);
+        let inhibit = u32::from(self.store.get(at::MOTION_INHIBIT)).saturating_mul(1000);
+        let stamp = self.stamp();
+        let done = self.drive.step(STEP_MS, demand, dead_band, inhibit);
+        if done.hi_torque {
+            self.warnings.add(self.wall, stamp, 2);
+        }
+        if let Some(stroke) = done.stroke {
+            setup::curve(&mut self.store, &stroke, stamp, true);
+        }
+        // The end of travel clears enumerated open and close commands.
+        let at_end = match self.command {
+            command::OPEN => self.drive.is_open(),
+            command::CLOSE => self.drive.is_closed(),
+            _ => false,
+        };
+        if at_end {
+            self.command = command::NONE;
+        }
+    }
+
+    /// A dip of the mains, once in a quarter of an hour.
+    fn mains(&mut self) {
+        let quarter = self.age_ms.checked_rem(900_000).unwrap_or(0);
+        let (before, alarm_before) = (self.drive.low_mains, self.drive.no_mains);
+        let live = self.programme != Programme::Idle;
+        self.drive.low_mains = live && (400_000..410_000).contains(&quarter);
+        self.drive.no_mains = live && (402_000..409_000).contains(&quarter);
+        let stamp = self.stamp();
+        if self.drive.low_mains && !before {
+            self.warnings.add(self.wall, stamp, 4);
+        }
+        if self.drive.no_mains && !alarm_before {
+            self.alarms.add(self.wall, stamp, 11);
+            // An alarm clears enumerated open and close commands.
+            if matches!(self.command, command::OPEN | command::CLOSE) {
+                self.command = command::NONE;
+            }
+        }
+    }
+
+    /// True while the bus wants something.
+    fn is_commanded(&self) -> bool {
+        self.bits != 0 || self.command != command::NONE || self.pst != Pst::Off
+    }
+
+    fn has(&self, bit: u16) -> bool {
+        self.bits & bit != 0
+    }
+
+    fn is_esd(&self) -> bool {
+        self.has(bit::ESD) || self.command == command::ESD
+    }
+
+    fn is_positioner(&self) -> bool {
+        self.has(bit::POSITIONER) || self.command == command::POSITIONER
+    }
+
+    /// True if the bus was silent for too long and the actuator acts on it (section 9.3).
+    fn is_fail_safe(&self) -> bool {
+        let enabled = !self.is_v2() || self.store.get(at::FAIL_SAFE_ENABLED) == 1;
+        let delay = u32::from(self.store.get(at::FAIL_SAFE_DELAY)).saturating_add(10);
+        enabled
+            && self.store.get(at::FAIL_SAFE_ACTION) != 0
+            && self.since_message_ms >= delay.saturating_mul(1000)
+    }
+
+    /// What the motor is to do, by priority: ESD, stop, fail-safe, test, positioner, open and close,
+    /// and at last the programme.
+    fn demand(&self) -> Demand {
+        if self.drive.no_mains {
+            return Demand::Stop;
+        }
+        if self.is_esd() {
+            let (action, position) = if self.is_v2() {
+                (self.store.get(at::ESD_ACTION), self.store.get(at::ESD_POSITION))
+            } else {
+                (1, 0)
+            };
+            return action_of(action, position);
+        }
+        if self.has(bit::STOP) {
+            return Demand::Stop;
+        }
+        if self.is_fail_safe() {
+            let position = self.store.get(at::FAIL_SAFE_POSITION);
+            return action_of(self.store.get(at::FAIL_SAFE_ACTION), position);
+        }
+        match self.pst {
+            Pst::Away(target) => return Demand::Reach(target),
+            Pst::Pause(_) => return Demand::Stop,
+            Pst::Back => return Demand::Open,
+            Pst::Off => {}
+        }
+        if self.is_positioner() {
+            let wanted = u32::from(self.store.get(at::POSITION_REQUEST));
+            return Demand::Follow(wanted.saturating_mul(100));
+        }
+        match (self.has(bit::OPEN), self.has(bit::CLOSE), self.command) {
+            (true, false, _) | (false, false, command::OPEN) => Demand::Open,
+            (false, true, _) | (false, false, command::CLOSE) => Demand::Close,
+            (true, true, _) => Demand::Stop,
+            _ => self.programmed(),
+        }
+    }
+
+    /// What the programme wants.
+    fn programmed(&self) -> Demand {
+        if self.since_command_ms < RESUME_MS {
+            return Demand::Stop;
+        }
+        match self.programme {
+            Programme::Idle => Demand::Stop,
+            Programme::Strokes => match self.age_ms.checked_rem(100_000).unwrap_or(0) {
+                10_000..50_000 => Demand::Open,
+                60_000.. => Demand::Close,
+                _ => Demand::Stop,
+            },
+            Programme::Modulating => Demand::Follow(self.signal()),
+        }
+    }
+
+    /// The signal that a modulating actuator follows, in thousandths of a percent.
+    fn signal(&self) -> u32 {
+        const LEVELS: [u32; 12] = [
+            42_000, 44_500, 51_000, 63_000, 60_500, 58_000, 71_000, 66_000, 49_000, 37_500, 28_000,
+            35_000,
+        ];
+        let which = self.age_ms.checked_div(15_000).unwrap_or(0);
+        let which = which.checked_rem(12).unwrap_or(0);
+        let which = usize::try_from(which).unwrap_or(0);
+        LEVELS.get(which).copied().unwrap_or(0)
+    }
+
+    /// Goes on with a partial stroke test (section 12).
+    fn test(&mut self) {
+        self.pst = match self.pst {
+            Pst::Off => return,
+            Pst::Away(target) if self.drive.position() <= target => {
+                let pause = u32::from(self.store.get(at::PST_PAUSE));
+                Pst::Pause(pause.saturating_mul(1000))
+            }
+            Pst::Pause(0) => Pst::Back,
+            Pst::Pause(left) => Pst::Pause(left.saturating_sub(STEP_MS)),
+            Pst::Back if self.drive.is_open() => {
+                self.store.set(at::PST_STATUS, 1);
+                let stored = self.store.get(at::PST_STORED).saturating_add(1).min(16);
+                self.store.set(at::PST_STORED, stored);
+                if matches!(self.command, command::PST | command::BASELINE_PST) {
+                    self.command = command::NONE;
+                }
+                Pst::Off
+            }
+            other => other,
+        };
+    }
+
+    /// Begins a partial stroke test, if the set-up allows it and the valve is open.
+    fn begin_test(&mut self) {
+        let allowed = self.is_v2()
+            && self.store.get(at::EFS_INPUT_MODE) == 0
+            && self.store.get(at::INTERLOCK_MODE) == 1;
+        if allowed && self.pst == Pst::Off && self.drive.is_open() {
+            let travel = u32::from(self.store.get(at::PST_TRAVEL)).saturating_mul(1000);
+            self.pst = Pst::Away(drive::OPEN.saturating_sub(travel));
+        } else if matches!(self.command, command::PST | command::BASELINE_PST) {
+            self.command = command::NONE;
+        }
+    }
+}
+
+/// What ESD and fail-safe actions mean: 0 off, 1 close, 2 open, 3 stay put, 4 go to percent.
+fn action_of(action: u16, position: u16) -> Demand {
+    match action {
+        1 => Demand::Close,
+        2 => Demand::Open,
+        4 => Demand::Reach(u32::from(position).saturating_mul(1000)),
+        _ => Demand::Stop,
+    }
+}
+
+/// Counters go round.
+const fn count(counter: &mut u16) {
+    *counter = counter.wrapping_add(1);
+}
