@@ -37,7 +37,10 @@ pub fn app(state: App) -> Router {
         .route("/ws", get(ws::upgrade))
         .fallback(get(crate::http::file))
         .method_not_allowed_fallback(|| async {
-            crate::http::plain(StatusCode::METHOD_NOT_ALLOWED, "Only GET is answered here.\n")
+            crate::http::plain(
+                StatusCode::METHOD_NOT_ALLOWED,
+                "Only GET is answered here.\n",
+            )
         })
         .with_state(state)
 }

@@ -15,10 +15,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Where the page is served if nothing else is said.
-pub const LISTEN: SocketAddr = SocketAddr::new(
-    std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST),
-    8080,
-);
+pub const LISTEN: SocketAddr =
+    SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
 
 /// The file that is read if it is in the current directory.
 pub const FILE: &str = "valvescope.toml";
@@ -158,7 +156,11 @@ impl Mode {
     /// Bits of one character on the wire, start bit included.
     #[must_use]
     pub const fn bits(self) -> u32 {
-        let parity = if matches!(self.parity, Parity::None) { 0 } else { 1 };
+        let parity = if matches!(self.parity, Parity::None) {
+            0
+        } else {
+            1
+        };
         1 + self.data as u32 + parity + self.stop as u32
     }
 }
@@ -243,7 +245,7 @@ impl Config {
         };
         let raw: raw::File = toml::from_str(text).map_err(|error| {
             let at = error.span().map_or(0, |s| s.start);
-            wrong(at, error.message().replace('\n', "; "))
+            wrong(at, explain(text, at, error.message()))
         })?;
         check::check(raw).map_err(|check::Wrong { at, text }| wrong(at, text))
     }
@@ -269,10 +271,37 @@ impl Config {
                 turnaround: Duration::ZERO,
             }],
             devices: vec![
-                device("XV-101", Device::Icon3000v2, 1, "Feed inlet, isolating valve"),
+                device(
+                    "XV-101",
+                    Device::Icon3000v2,
+                    1,
+                    "Feed inlet, isolating valve",
+                ),
                 device("FV-102", Device::Icon3000v2, 2, "Feed flow, control valve"),
-                device("XV-201", Device::Icon3000, 3, "Tank 2 outlet, isolating valve"),
+                device(
+                    "XV-201",
+                    Device::Icon3000,
+                    3,
+                    "Tank 2 outlet, isolating valve",
+                ),
             ],
         }
+    }
+}
+
+/// What the parser says, with the key that it is about.
+fn explain(text: &str, at: usize, message: &str) -> String {
+    let message = message
+        .replace('\n', "; ")
+        .replace("expected i64", "expected a whole number without quotes")
+        .replace("expected a string", "expected text in quotes");
+    if message.starts_with("missing field") {
+        return format!("{message}; add it to this section");
+    }
+    let before = text.get(..at).unwrap_or("");
+    let line = before.rsplit('\n').next().unwrap_or("");
+    match line.split_once('=') {
+        Some((key, _)) if !message.contains('`') => format!("`{}`: {message}", key.trim()),
+        _ => message,
     }
 }

@@ -35,7 +35,10 @@ pub(crate) async fn file(uri: Uri, headers: HeaderMap) -> Response<Body> {
     if let Some(answer) = find(name, &headers) {
         return answer;
     }
-    let is_place = !name.rsplit('/').next().is_some_and(|last| last.contains('.'));
+    let is_place = !name
+        .rsplit('/')
+        .next()
+        .is_some_and(|last| last.contains('.'));
     if is_place && let Some(answer) = find("index.html", &headers) {
         return answer;
     }
@@ -73,22 +76,13 @@ fn find(name: &str, headers: &HeaderMap) -> Option<Response<Body>> {
         HeaderValue::from_static(content_type(name)),
     );
     // Kept, but asked for again each time: the names say nothing of the version.
-    headers.insert(
-        header::CACHE_CONTROL,
-        HeaderValue::from_static("no-cache"),
-    );
-    headers.insert(
-        header::VARY,
-        HeaderValue::from_static("accept-encoding"),
-    );
+    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-cache"));
+    headers.insert(header::VARY, HeaderValue::from_static("accept-encoding"));
     if let Ok(tag) = HeaderValue::from_str(&tag) {
         headers.insert(header::ETAG, tag);
     }
     if let Some(encoding) = encoding {
-        headers.insert(
-            header::CONTENT_ENCODING,
-            HeaderValue::from_static(encoding),
-        );
+        headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static(encoding));
     }
     Some(answer)
 }

@@ -20,5 +20,6 @@ pub mod clock;
 pub mod config;
 pub mod http;
 pub mod plant;
+pub mod serial;
 pub mod sim;
 pub mod ws;

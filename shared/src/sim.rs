@@ -344,7 +344,10 @@ impl Icon3000 {
         }
         if self.is_esd() {
             let (action, position) = if self.is_v2() {
-                (self.store.get(at::ESD_ACTION), self.store.get(at::ESD_POSITION))
+                (
+                    self.store.get(at::ESD_ACTION),
+                    self.store.get(at::ESD_POSITION),
+                )
             } else {
                 (1, 0)
             };

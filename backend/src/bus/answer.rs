@@ -193,12 +193,20 @@ mod tests {
 
     #[test]
     fn exceptions_answer() {
-        check(Framing::Rtu, &frame(Framing::Rtu, 0, 9, &[0x83, 2]), |found| {
-            assert_eq!(found.answer, Some(vec![0x83, 2]));
-        });
-        check(Framing::Rtu, &frame(Framing::Rtu, 0, 9, &[0x84, 2]), |found| {
-            assert_eq!((found.answer, found.strays), (None, 1));
-        });
+        check(
+            Framing::Rtu,
+            &frame(Framing::Rtu, 0, 9, &[0x83, 2]),
+            |found| {
+                assert_eq!(found.answer, Some(vec![0x83, 2]));
+            },
+        );
+        check(
+            Framing::Rtu,
+            &frame(Framing::Rtu, 0, 9, &[0x84, 2]),
+            |found| {
+                assert_eq!((found.answer, found.strays), (None, 1));
+            },
+        );
     }
 
     #[test]
@@ -206,8 +214,12 @@ mod tests {
         for framing in SERIAL {
             let one = frame(framing, 0, 9, &GOOD);
             let two = frame(framing, 0, 9, &[3, 4, 1, 2, 3, 5]);
-            check(framing, &[one.as_slice(), &one].concat(), |f| assert!(!f.two));
-            check(framing, &[one.as_slice(), &two].concat(), |f| assert!(f.two));
+            check(framing, &[one.as_slice(), &one].concat(), |f| {
+                assert!(!f.two)
+            });
+            check(framing, &[one.as_slice(), &two].concat(), |f| {
+                assert!(f.two)
+            });
         }
     }
 

@@ -125,7 +125,14 @@ mod tests {
     #[test]
     fn fragments_do_not_pass() {
         for framing in Framing::ALL {
-            for bytes in [&b""[..], &[1], &[1, 3], b":", b":01", &[0, 1, 0, 0, 0, 6, 1]] {
+            for bytes in [
+                &b""[..],
+                &[1],
+                &[1, 3],
+                b":",
+                b":01",
+                &[0, 1, 0, 0, 0, 6, 1],
+            ] {
                 assert!(admit(framing, bytes).is_err(), "{framing:?} {bytes:?}");
             }
         }

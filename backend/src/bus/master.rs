@@ -216,9 +216,16 @@ impl Master {
 
     /// What came, in words.
     fn describe(&self, asked: &Asked<'_>) -> String {
-        let heard = self.heard.strip_prefix(asked.request).unwrap_or(&self.heard);
+        let heard = self
+            .heard
+            .strip_prefix(asked.request)
+            .unwrap_or(&self.heard);
         let shown = heard.get(..12).unwrap_or(heard);
-        let more = if heard.len() > shown.len() { " …" } else { "" };
+        let more = if heard.len() > shown.len() {
+            " …"
+        } else {
+            ""
+        };
         format!(
             "{} bytes came that are no sound answer: {}{more}",
             heard.len(),

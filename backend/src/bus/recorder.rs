@@ -141,7 +141,8 @@ impl Recorder {
             };
             ring.bytes -= old.len();
         }
-        self.activity.send_modify(|count| *count = count.wrapping_add(1));
+        self.activity
+            .send_modify(|count| *count = count.wrapping_add(1));
     }
 
     fn lock(&self) -> MutexGuard<'_, Ring> {
@@ -168,7 +169,11 @@ mod tests {
     fn captures(pulled: &Pulled) -> Vec<(u64, Way, bool, String)> {
         let parse = |text: &Utf8Bytes| match serde_json::from_str(text).unwrap() {
             ToPage::Capture {
-                seq, way, ends, hex, ..
+                seq,
+                way,
+                ends,
+                hex,
+                ..
             } => (seq, way, ends, hex),
             other => panic!("{other:?}"),
         };

@@ -10,6 +10,7 @@ use shared::address::Table;
 use shared::encode::Read;
 use shared::frame::Framing;
 use shared::pdu::length::{self, Length};
+use std::fmt;
 use std::io;
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
@@ -25,12 +26,20 @@ use tokio_modbus::{Request, Response};
 const CONNECT: Duration = Duration::from_secs(3);
 
 /// A device or gateway that is reached over TCP.
-#[derive(Debug)]
 pub struct Remote {
     host: String,
     timeout: Duration,
     recorder: Recorder,
     modbus: Option<Modbus>,
+}
+
+impl fmt::Debug for Remote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Remote")
+            .field("host", &self.host)
+            .field("connected", &self.modbus.is_some())
+            .finish_non_exhaustive()
+    }
 }
 
 impl Remote {
@@ -49,14 +58,8 @@ impl Remote {
             recorder,
             modbus: None,
         };
-        remote.modbus = Some(remote.attach().await?);
+        remote.modbus = Some(attach(host, &remote.recorder).await?);
         Ok(remote)
-    }
-
-    async fn attach(&self) -> io::Result<Modbus> {
-        let stream = connect(&self.host).await?;
-        let tap = Tap::new(stream, Framing::Tcp, self.recorder.clone());
-        Ok(tcp::attach(Checked::new(tap)))
     }
 
     /// Reads once.
@@ -66,7 +69,7 @@ impl Remote {
     pub async fn read(&mut self, unit: u8, read: Read) -> Result<Answer, Fault> {
         let mut modbus = match self.modbus.take() {
             Some(modbus) => modbus,
-            None => self.attach().await?,
+            None => attach(&self.host, &self.recorder).await?,
         };
         modbus.set_slave(Slave(unit));
         let (start, count) = (read.start.get(), read.count());
@@ -98,12 +101,17 @@ impl Remote {
                 io::ErrorKind::PermissionDenied => Err(error.into()),
                 _ => Err(Fault::Closed),
             },
-            Ok(Err(tokio_modbus::Error::Protocol(error))) => {
-                Err(Fault::Damaged(error.to_string()))
-            }
+            Ok(Err(tokio_modbus::Error::Protocol(error))) => Err(Fault::Damaged(error.to_string())),
             Err(_) => Err(Fault::Silence),
         }
     }
+}
+
+/// Opens a connection that is recorded and checked.
+async fn attach(host: &str, recorder: &Recorder) -> io::Result<Modbus> {
+    let stream = connect(host).await?;
+    let tap = Tap::new(stream, Framing::Tcp, recorder.clone());
+    Ok(tcp::attach(Checked::new(tap)))
 }
 
 /// Opens a connection without delay for small frames.
@@ -121,7 +129,10 @@ fn pdu(response: &Response, read: Read) -> Result<Vec<u8>, Fault> {
     match response {
         Response::ReadCoils(bits) | Response::ReadDiscreteInputs(bits) => {
             for eight in bits.chunks(8) {
-                let byte = eight.iter().rev().fold(0_u8, |b, on| b << 1 | u8::from(*on));
+                let byte = eight
+                    .iter()
+                    .rev()
+                    .fold(0_u8, |b, on| b << 1 | u8::from(*on));
                 pdu.push(byte);
             }
         }

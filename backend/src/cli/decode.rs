@@ -167,7 +167,11 @@ impl Stream {
         let last = len.checked_sub(1).and_then(|i| self.session.frame(i));
         // A long run of noise would be kept in memory to its end.
         let long = last.is_some_and(|f| f.is_noise() && f.len >= LONGEST_NOISE);
-        let until = if long { len } else { len.saturating_sub(held_back) };
+        let until = if long {
+            len
+        } else {
+            len.saturating_sub(held_back)
+        };
         while self.next < until {
             let Some(frame) = self.session.frame(self.next).copied() else {
                 break;

@@ -134,10 +134,9 @@ async fn asked_to_end() {
 
 /// Where to listen, from the command line.
 fn address(text: &str) -> Result<SocketAddr, String> {
-    let full = text.strip_prefix("localhost:").map_or_else(
-        || text.to_owned(),
-        |port| format!("127.0.0.1:{port}"),
-    );
+    let full = text
+        .strip_prefix("localhost:")
+        .map_or_else(|| text.to_owned(), |port| format!("127.0.0.1:{port}"));
     full.parse().map_err(|_| {
         format!("`{text}` is no address; write it as 127.0.0.1:8080, or with port 0 for a free one")
     })

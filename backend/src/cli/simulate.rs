@@ -1,14 +1,157 @@
-//! `valvescope simulate`.
+//! `valvescope simulate`: an ICON3000 for other programs.
 
-use super::refuse;
+use super::serve::{bind, say};
+use super::{DeviceArg, address, asked_to_end, block_on, log_to_stderr, refuse};
+use crate::bus::timing::gap;
+use crate::clock::Clock;
+use crate::config::{DeviceConfig, Mode, Parity};
+use crate::serial;
+use crate::sim::{self, Actuators, Pace};
+use clap::ValueEnum;
+use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio_serial::{SerialPort, SerialStream};
 
-/// Be a device.
+/// Shortest silence that ends a frame: less can't be told apart from a busy computer.
+const SHORTEST_GAP: Duration = Duration::from_millis(4);
+
+/// Be a device. It moves by itself, and it obeys other masters: it is no real valve.
 #[derive(Debug, clap::Args)]
+#[command(group(clap::ArgGroup::new("line").required(true)))]
 pub(super) struct Args {
+    /// Modbus TCP on this address; port 0 takes a free one.
+    #[arg(long, value_name = "ADDRESS", value_parser = address, group = "line")]
+    listen: Option<SocketAddr>,
+    /// Modbus RTU on this serial port.
+    #[arg(long, value_name = "PATH", group = "line")]
+    serial: Option<PathBuf>,
+    /// Modbus RTU on a new pseudo terminal, whose path is printed.
+    #[arg(long, group = "line")]
+    pty: bool,
+    /// Unit address.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=247))]
+    unit: u8,
+    /// Baud rate of the serial port.
+    #[arg(long, default_value_t = 9600, value_parser = clap::value_parser!(u32).range(300..=921_600))]
+    baud: u32,
+    /// Parity of the serial port.
+    #[arg(long, value_enum, default_value_t = ParityArg::Even)]
+    parity: ParityArg,
+    /// Which device to be.
+    #[arg(long, value_enum, default_value_t = DeviceArg::Icon3000v2)]
+    device: DeviceArg,
+    /// The tag that it reports. Tags that begin with FV or PV are control valves.
+    #[arg(long, default_value = "XV-101")]
+    tag: String,
+}
+
+/// Parities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ParityArg {
+    /// No parity, two stop bits.
+    None,
+    /// Even parity, one stop bit.
+    Even,
+    /// Odd parity, one stop bit.
+    Odd,
+}
+
+impl ParityArg {
+    /// The mode that the ICON3000 has with this parity (VCIOM-16345-EN, section 3).
+    const fn mode(self) -> Mode {
+        let (parity, stop) = match self {
+            Self::None => (Parity::None, 2),
+            Self::Even => (Parity::Even, 1),
+            Self::Odd => (Parity::Odd, 1),
+        };
+        Mode {
+            data: 8,
+            parity,
+            stop,
+        }
+    }
 }
 
 /// Runs the device until it is asked to end.
-pub(super) fn run(_args: &Args) -> ExitCode {
-    refuse("not yet")
+pub(super) fn run(args: &Args) -> ExitCode {
+    log_to_stderr();
+    if args.device == DeviceArg::None {
+        return refuse("it must be some device; choose icon3000v2 or icon3000");
+    }
+    block_on(simulate(args))
+}
+
+async fn simulate(args: &Args) -> ExitCode {
+    let device = DeviceConfig {
+        tag: args.tag.clone(),
+        device: args.device.into(),
+        bus: 0,
+        unit: args.unit,
+        description: String::new(),
+    };
+    let actuators = Actuators::new([&device], Clock::start());
+    if let Some(address) = args.listen {
+        return tcp(address, actuators).await;
+    }
+    let pace = Pace::real(gap(args.baud).max(SHORTEST_GAP));
+    if let Some(path) = &args.serial {
+        let path = path.to_string_lossy();
+        return match serial::open(&path, args.baud, args.parity.mode()) {
+            Ok(port) => {
+                let mode = args.parity.mode();
+                say(&format!(
+                    "serving on {path} {} {mode}, unit {}",
+                    args.baud, args.unit
+                ));
+                rtu(port, &actuators, pace).await
+            }
+            Err(error) => refuse(crate::bus::words::serial(&path, &error)),
+        };
+    }
+    match SerialStream::pair() {
+        Ok((ours, theirs)) => {
+            let path = theirs.name().unwrap_or_default();
+            say(&format!("serving on {path}, unit {}", args.unit));
+            // Their end stays open here, so that a client may come and go.
+            let code = rtu(ours, &actuators, pace).await;
+            drop(theirs);
+            code
+        }
+        Err(error) => refuse(format_args!("can't make a pseudo terminal: {error}")),
+    }
+}
+
+async fn tcp(address: SocketAddr, actuators: Actuators) -> ExitCode {
+    let (listener, listening) = match bind(address).await {
+        Ok(bound) => bound,
+        Err(error) => {
+            return refuse(format_args!(
+                "can't listen on {address}: {error}; choose another address with --listen"
+            ));
+        }
+    };
+    say(&format!("listening on {listening}"));
+    tokio::select! {
+        served = sim::serve_tcp(listener, actuators) => match served {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => refuse(format_args!("stopped serving: {error}")),
+        },
+        () = asked_to_end() => ExitCode::SUCCESS,
+    }
+}
+
+async fn rtu<S>(line: S, actuators: &Actuators, pace: Pace) -> ExitCode
+where
+    S: AsyncRead + AsyncWrite + Unpin,
+{
+    tokio::select! {
+        served = sim::serve_rtu(line, actuators, pace) => match served {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => refuse(format_args!("the line is lost: {error}")),
+        },
+        () = asked_to_end() => ExitCode::SUCCESS,
+    }
 }

@@ -99,10 +99,7 @@ fn bus(bus: &Spanned<raw::Bus>, config: &Config) -> Result<BusConfig, Wrong> {
     };
     // A key of another kind is a mistake, not a default.
     let serial = matches!(line, LineConfig::Serial { .. });
-    let network = matches!(
-        line,
-        LineConfig::Tcp { .. } | LineConfig::RtuOverTcp { .. }
-    );
+    let network = matches!(line, LineConfig::Tcp { .. } | LineConfig::RtuOverTcp { .. });
     let strays = [
         (raw.port.as_ref().map(Spanned::span), serial, "port"),
         (raw.baud.as_ref().map(Spanned::span), serial, "baud"),
@@ -243,7 +240,11 @@ fn device(raw: raw::Device, config: &Config) -> Result<DeviceConfig, Wrong> {
         let text = if config.buses.is_empty() {
             "there is no bus; add a [[bus]] before the devices".to_owned()
         } else {
-            let names: Vec<String> = config.buses.iter().map(|b| format!("\"{}\"", b.name)).collect();
+            let names: Vec<String> = config
+                .buses
+                .iter()
+                .map(|b| format!("\"{}\"", b.name))
+                .collect();
             format!("there is no bus \"{name}\"; write {}", names.join(" or "))
         };
         return wrong(&raw.bus, text);
@@ -283,9 +284,6 @@ fn device(raw: raw::Device, config: &Config) -> Result<DeviceConfig, Wrong> {
         device,
         bus,
         unit,
-        description: raw
-            .description
-            .map(Spanned::into_inner)
-            .unwrap_or_default(),
+        description: raw.description.map(Spanned::into_inner).unwrap_or_default(),
     })
 }

@@ -6,7 +6,9 @@ fn parse(text: &str) -> Result<Config, String> {
 
 /// A bus with the lines given, and a device on it.
 fn with(bus: &str, device: &str) -> Result<Config, String> {
-    parse(&format!("[[bus]]\nname = \"a\"\n{bus}\n[[device]]\ntag = \"x\"\n{device}\n"))
+    parse(&format!(
+        "[[bus]]\nname = \"a\"\n{bus}\n[[device]]\ntag = \"x\"\n{device}\n"
+    ))
 }
 
 const RTU: &str = "kind = \"rtu\"\nport = \"/dev/ttyUSB0\"";
@@ -40,32 +42,95 @@ fn defaults_are_those_of_the_standard() {
 fn refusals_name_the_line_and_what_to_do() {
     let check = |text: Result<Config, String>, line: usize, words: &[&str]| {
         let text = text.unwrap_err();
-        assert!(text.starts_with(&format!("plant.toml, line {line}: ")), "{text}");
+        assert!(
+            text.starts_with(&format!("plant.toml, line {line}: ")),
+            "{text}"
+        );
         for word in words {
             assert!(text.contains(word), "{text} lacks {word}");
         }
     };
-    check(with(&format!("{RTU}\nbaud = 9601"), ICON), 5, &["9601", "9600, 19200"]);
-    check(with(&format!("{RTU}\nmode = \"7E1\""), ICON), 5, &["7E1", "8E1"]);
-    check(with(&format!("{RTU}\nhost = \"a\""), ICON), 5, &["host", "remove"]);
-    check(with(&format!("{RTU}\nbuad = 9600"), ICON), 5, &["buad", "baud"]);
+    check(
+        with(&format!("{RTU}\nbaud = 9601"), ICON),
+        5,
+        &["9601", "9600, 19200"],
+    );
+    check(
+        with(&format!("{RTU}\nmode = \"7E1\""), ICON),
+        5,
+        &["7E1", "8E1"],
+    );
+    check(
+        with(&format!("{RTU}\nhost = \"a\""), ICON),
+        5,
+        &["host", "remove"],
+    );
+    check(
+        with(&format!("{RTU}\nbuad = 9600"), ICON),
+        5,
+        &["buad", "baud"],
+    );
     check(with("kind = \"rtu\"", ICON), 2, &["port", "/dev/ttyUSB0"]);
     check(with("kind = \"udp\"", ICON), 3, &["udp", "rtu-over-tcp"]);
-    check(with("kind = \"tcp\"\nhost = \"a b\"", ICON), 4, &["a b", "502"]);
+    check(
+        with("kind = \"tcp\"\nhost = \"a b\"", ICON),
+        4,
+        &["a b", "502"],
+    );
     check(with("kind = \"tcp\"\nhost = \"a:0\"", ICON), 4, &["a:0"]);
     let device = |text: &str| with(RTU, text);
-    check(device("kind = \"icon\"\nbus = \"a\"\nunit = 1"), 7, &["icon3000v2"]);
-    check(device("kind = \"none\"\nbus = \"b\"\nunit = 1"), 8, &["\"b\"", "write \"a\""]);
-    check(device("kind = \"none\"\nbus = \"a\"\nunit = 0"), 9, &["all devices", "1 to 247"]);
-    check(device("kind = \"none\"\nbus = \"a\"\nunit = 248"), 9, &["248", "1 to 247"]);
-    check(device("kind = \"none\"\nbus = \"a\"\nunit = \"1\""), 9, &["integer"]);
+    check(
+        device("kind = \"icon\"\nbus = \"a\"\nunit = 1"),
+        7,
+        &["icon3000v2"],
+    );
+    check(
+        device("kind = \"none\"\nbus = \"b\"\nunit = 1"),
+        8,
+        &["\"b\"", "write \"a\""],
+    );
+    check(
+        device("kind = \"none\"\nbus = \"a\"\nunit = 0"),
+        9,
+        &["all devices", "1 to 247"],
+    );
+    check(
+        device("kind = \"none\"\nbus = \"a\"\nunit = 248"),
+        9,
+        &["248", "1 to 247"],
+    );
+    check(
+        device("kind = \"none\"\nbus = \"a\"\nunit = \"1\""),
+        9,
+        &["`unit`", "whole number"],
+    );
+    check(
+        device("kind = \"none\"\nbus = \"a\""),
+        5,
+        &["`unit`", "add it"],
+    );
     let again = "[[device]]\ntag = \"x\"\nkind = \"none\"\nbus = \"a\"\nunit = 2";
     check(with(RTU, &format!("{ICON}\n{again}")), 11, &["already"]);
     let again = "[[device]]\ntag = \"y\"\nkind = \"none\"\nbus = \"a\"\nunit = 1";
-    check(with(RTU, &format!("{ICON}\n{again}")), 14, &["\"x\" already"]);
-    check(with("kind = \"simulator\"", "kind = \"none\"\nbus = \"a\"\nunit = 1"), 6, &["icon3000v2"]);
+    check(
+        with(RTU, &format!("{ICON}\n{again}")),
+        14,
+        &["\"x\" already"],
+    );
+    check(
+        with(
+            "kind = \"simulator\"",
+            "kind = \"none\"\nbus = \"a\"\nunit = 1",
+        ),
+        6,
+        &["icon3000v2"],
+    );
     check(parse("[server]\nlisten = \"8080\""), 2, &["127.0.0.1:8080"]);
-    check(parse("[[bus]]\nname = \"a\"\n\nname = \"b\""), 4, &["duplicate"]);
+    check(
+        parse("[[bus]]\nname = \"a\"\n\nname = \"b\""),
+        4,
+        &["duplicate"],
+    );
 }
 
 #[test]
@@ -78,7 +143,13 @@ fn the_default_plant_is_simulated() {
 
 #[test]
 fn modes_have_their_bits() {
-    for (text, bits) in [("8N1", 10), ("8E1", 11), ("8N2", 11), ("7E1", 10), ("7N2", 10)] {
+    for (text, bits) in [
+        ("8N1", 10),
+        ("8E1", 11),
+        ("8N2", 11),
+        ("7E1", 10),
+        ("7N2", 10),
+    ] {
         assert_eq!(Mode::parse(text).map(Mode::bits), Some(bits), "{text}");
     }
     assert_eq!(Mode::parse("9N1"), None);

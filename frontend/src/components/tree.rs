@@ -169,6 +169,7 @@ fn FieldRow(
     let raw = facts.short_raw();
     let numeric = facts.numeric;
     let group = facts.value.is_empty();
+    let off = facts.value == shared::value::ACTIVE.0;
     let quality = (facts.quality != Quality::Good).then(|| facts.quality.label());
     let trust = (facts.trust != Trust::Manual && facts.source.is_some()).then(|| facts.trust.key());
     let source = facts.source.map(|s| s.to_string()).unwrap_or_default();
@@ -185,7 +186,7 @@ fn FieldRow(
             class:marked=move || hovered.get() == Some(id)
             class:selected=is_selected
             class:group=group
-            class:off=facts.value == shared::value::ACTIVE.0
+            class:off=off
             role="treeitem"
             tabindex=tab
             attr:aria-level=(line.depth + 1).to_string()

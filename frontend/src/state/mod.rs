@@ -2,12 +2,17 @@
 
 pub mod detect;
 pub mod findings;
+pub mod health;
+pub mod job;
 pub mod load;
+pub mod overview;
+pub mod plant;
 pub mod route;
 pub mod samples;
 pub mod selection;
 pub mod shortcuts;
 pub mod summary;
 pub mod tree;
+pub mod values;
 pub mod window;
 pub mod work;

@@ -107,7 +107,10 @@ impl Icon3000 {
                 let all: Vec<bool> = all.map(is_on).collect();
                 // The first is the lowest bit; what is left of the last byte stays 0.
                 for eight in all.chunks(8) {
-                    let byte = eight.iter().rev().fold(0_u8, |b, on| b << 1 | u8::from(*on));
+                    let byte = eight
+                        .iter()
+                        .rev()
+                        .fold(0_u8, |b, on| b << 1 | u8::from(*on));
                     values.push(byte);
                 }
             }

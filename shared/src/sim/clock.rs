@@ -113,7 +113,15 @@ impl Stamp {
     /// Six bytes: day, month, year, seconds, minutes, hours (note 12).
     pub(super) fn curve(self) -> [u8; 6] {
         let [_, year] = split(self.year);
-        [self.day, self.month, year, self.second, self.minute, self.hour].map(bcd)
+        [
+            self.day,
+            self.month,
+            year,
+            self.second,
+            self.minute,
+            self.hour,
+        ]
+        .map(bcd)
     }
 
     /// Reads the four words of date and time; `None` if they hold none.
@@ -122,7 +130,9 @@ impl Stamp {
         let [day, month] = [from_bcd(d[0])?, from_bcd(d[1])?];
         let century = u16::from(from_bcd(y[0])?);
         Some(Self {
-            year: century.saturating_mul(100).saturating_add(from_bcd(y[1])?.into()),
+            year: century
+                .saturating_mul(100)
+                .saturating_add(from_bcd(y[1])?.into()),
             month,
             day,
             hour: from_bcd(h[1])?,

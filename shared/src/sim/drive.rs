@@ -12,8 +12,24 @@ const HI_TORQUE: u8 = 80;
 
 /// Torque by position in percent of travel and of nominal torque: break-out of the seat, running,
 /// and the end.
-const OPENING: [(u32, u32); 7] = [(0, 62), (4, 48), (10, 27), (45, 23), (60, 26), (90, 22), (100, 36)];
-const CLOSING: [(u32, u32); 7] = [(0, 71), (3, 55), (9, 31), (40, 25), (60, 24), (92, 22), (100, 39)];
+const OPENING: [(u32, u32); 7] = [
+    (0, 62),
+    (4, 48),
+    (10, 27),
+    (45, 23),
+    (60, 26),
+    (90, 22),
+    (100, 36),
+];
+const CLOSING: [(u32, u32); 7] = [
+    (0, 71),
+    (3, 55),
+    (9, 31),
+    (40, 25),
+    (60, 24),
+    (92, 22),
+    (100, 39),
+];
 
 /// What the motor is to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

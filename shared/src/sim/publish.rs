@@ -30,7 +30,9 @@ fn between(low: u32, high: u32, position: u32) -> u32 {
             .unwrap_or(0)
             .saturating_mul(position.checked_div(100).unwrap_or(0))
     } else {
-        span.saturating_mul(position).checked_div(100_000).unwrap_or(0)
+        span.saturating_mul(position)
+            .checked_div(100_000)
+            .unwrap_or(0)
     };
     low.saturating_add(part)
 }
@@ -60,11 +62,17 @@ impl Icon3000 {
         store.set(at::WARNINGS, warnings | any);
         store.set(at::ALARMS_1, u16::from(self.drive.no_mains) << 8);
         store.set(at::MOTOR_ALARMS, self.alarms.count(&[2, 3]));
-        store.set(at::MOTOR_ALARMS.saturating_add(1), self.alarms.count(&[5, 6, 7, 8]));
+        store.set(
+            at::MOTOR_ALARMS.saturating_add(1),
+            self.alarms.count(&[5, 6, 7, 8]),
+        );
         let hours = u32::try_from(self.drive.run_ms.checked_div(3_600_000).unwrap_or(0));
         let hours = hours.unwrap_or(u32::MAX);
         store.long(at::CYCLES, self.drive.cycles.saturating_add(OLD_CYCLES));
-        store.long(at::RECENT_CYCLES, self.drive.cycles.saturating_add(RECENT_CYCLES));
+        store.long(
+            at::RECENT_CYCLES,
+            self.drive.cycles.saturating_add(RECENT_CYCLES),
+        );
         store.long(at::RUN_TIME, hours.saturating_add(OLD_HOURS));
         store.long(at::RECENT_RUN_TIME, hours.saturating_add(RECENT_HOURS));
         let request = if self.is_positioner() {
@@ -252,7 +260,10 @@ impl Icon3000 {
         store.signed(at::BOARD_TEMPERATURE, 28);
         store.set(at::OUTPUT_MA, word(between(400, 2000, position)));
         store.set(at::OUTPUT_BITS, word(between(0, 4095, position)));
-        store.set(at::LOGIC_REQUEST, word(request.checked_div(100).unwrap_or(0)));
+        store.set(
+            at::LOGIC_REQUEST,
+            word(request.checked_div(100).unwrap_or(0)),
+        );
         store.set(at::PST_PROGRESS, progress);
         let encoder = between(40_000, 1_640_000, position);
         store.long(at::ENCODER, encoder);

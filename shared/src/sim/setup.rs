@@ -54,7 +54,9 @@ pub(super) fn store(model: Model, tag: &str) -> Store {
         let samples = core::array::from_fn(|percent| {
             let position = u32::try_from(percent).unwrap_or(0).saturating_mul(1000);
             // When it was new, it ran a little easier.
-            drive::torque(opening, position, false).saturating_sub(4).max(1)
+            drive::torque(opening, position, false)
+                .saturating_sub(4)
+                .max(1)
         });
         let stroke = Stroke {
             opening,
@@ -86,9 +88,9 @@ fn defaults(store: &mut Store, model: Model) {
 }
 
 fn identity(store: &mut Store, model: Model, tag: &str) {
-    let number = tag
-        .bytes()
-        .fold(4711_u32, |sum, b| sum.wrapping_mul(33).wrapping_add(b.into()));
+    let number = tag.bytes().fold(4711_u32, |sum, b| {
+        sum.wrapping_mul(33).wrapping_add(b.into())
+    });
     let serial = format!("SIM{:06}", number.checked_rem(1_000_000).unwrap_or(0));
     store.text(at::NAME, 8, "Biffi ICON3000");
     store.text(at::SERIAL, 14, &serial);
@@ -147,9 +149,21 @@ fn version_2(store: &mut Store) {
 pub(super) fn curve(store: &mut Store, stroke: &Stroke, stamp: Stamp, last: bool) {
     let (curve, profile, time) = match (stroke.opening, last) {
         (true, true) => (at::LAST_OPEN_CURVE, at::LAST_OPEN_PROFILE, at::OPENING_TIME),
-        (false, true) => (at::LAST_CLOSE_CURVE, at::LAST_CLOSE_PROFILE, at::CLOSING_TIME),
-        (true, false) => (at::REFERENCE_OPEN_CURVE, at::REFERENCE_OPEN_PROFILE, at::OPENING_TIME),
-        (false, false) => (at::REFERENCE_CLOSE_CURVE, at::REFERENCE_CLOSE_PROFILE, at::CLOSING_TIME),
+        (false, true) => (
+            at::LAST_CLOSE_CURVE,
+            at::LAST_CLOSE_PROFILE,
+            at::CLOSING_TIME,
+        ),
+        (true, false) => (
+            at::REFERENCE_OPEN_CURVE,
+            at::REFERENCE_OPEN_PROFILE,
+            at::OPENING_TIME,
+        ),
+        (false, false) => (
+            at::REFERENCE_CLOSE_CURVE,
+            at::REFERENCE_CLOSE_PROFILE,
+            at::CLOSING_TIME,
+        ),
     };
     let seconds = u16::try_from(stroke.millis.div_ceil(1000)).unwrap_or(u16::MAX);
     if last {
@@ -168,7 +182,11 @@ pub(super) fn curve(store: &mut Store, stroke: &Stroke, stamp: Stamp, last: bool
         u16::from(part.iter().copied().max().unwrap_or(0))
     };
     let (first, last) = (quarter(0, 10), quarter(91, 101));
-    let (break_out, ending) = if stroke.opening { (first, last) } else { (last, first) };
+    let (break_out, ending) = if stroke.opening {
+        (first, last)
+    } else {
+        (last, first)
+    };
     store.fill(profile, [break_out, quarter(10, 91), ending]);
     store.date(profile.saturating_add(3), stamp);
 }

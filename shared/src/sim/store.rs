@@ -233,7 +233,10 @@ impl Store {
     /// Two words, high word first (note 11).
     pub(super) fn long(&mut self, address: u16, value: u32) {
         let [a, b, c, d] = value.to_be_bytes();
-        self.fill(address, [u16::from_be_bytes([a, b]), u16::from_be_bytes([c, d])]);
+        self.fill(
+            address,
+            [u16::from_be_bytes([a, b]), u16::from_be_bytes([c, d])],
+        );
     }
 
     /// Bytes, two a word, the first in the high byte.

@@ -51,7 +51,11 @@ impl Icon3000 {
             if self.may_write(Table::Coil, address)
                 && let Some(mask) = self.coil_bit(address)
             {
-                let bits = if on { self.bits | mask } else { self.bits & !mask };
+                let bits = if on {
+                    self.bits | mask
+                } else {
+                    self.bits & !mask
+                };
                 self.set_bits(bits);
             }
         }

@@ -91,7 +91,12 @@ fn long_streams_lose_nothing() {
         let [high, low] = at.to_be_bytes();
         let asked = [3, high, low, 0, 1];
         input.extend(shared::encode::frame(Framing::Rtu, 0, 9, &asked));
-        input.extend(shared::encode::frame(Framing::Rtu, 0, 9, &[3, 2, high, low]));
+        input.extend(shared::encode::frame(
+            Framing::Rtu,
+            0,
+            9,
+            &[3, 2, high, low],
+        ));
     }
     let (lines, tally) = json(&input);
     assert_eq!((tally.frames, tally.errors), (40_000, 0));
@@ -118,6 +123,9 @@ fn readable_text_begins_with_what_is_wrong() {
     let lines: Vec<&str> = text.lines().collect();
     assert!(lines[0].starts_with("#0  request  unit 125  FC 03 Read holding registers"));
     assert!(lines[1].starts_with("  error at 6: "), "{text}");
-    assert!(lines[2].contains("7D") && lines[2].contains("125"), "{text}");
+    assert!(
+        lines[2].contains("7D") && lines[2].contains("125"),
+        "{text}"
+    );
     assert!(text.ends_with("1 frame, errors in 1 entry\n"));
 }

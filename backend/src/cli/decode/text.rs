@@ -28,11 +28,19 @@ impl Paint {
     }
 
     fn head(&self) -> (&'static str, &'static str) {
-        if self.0 { ("\x1b[1m", "\x1b[0m") } else { ("", "") }
+        if self.0 {
+            ("\x1b[1m", "\x1b[0m")
+        } else {
+            ("", "")
+        }
     }
 
     fn faint(&self) -> (&'static str, &'static str) {
-        if self.0 { ("\x1b[2m", "\x1b[0m") } else { ("", "") }
+        if self.0 {
+            ("\x1b[2m", "\x1b[0m")
+        } else {
+            ("", "")
+        }
     }
 }
 
@@ -48,7 +56,10 @@ pub(super) fn write_frame(
     let (on, off) = paint.head();
     let (offset, len) = (frame.offset, frame.len);
     if frame.is_noise() {
-        write!(out, "{on}#{index}  noise{off}  offset {offset}, {len} bytes")?;
+        write!(
+            out,
+            "{on}#{index}  noise{off}  offset {offset}, {len} bytes"
+        )?;
     } else {
         let role = match frame.role {
             Role::Request => "request",

@@ -1,0 +1,105 @@
+//! Opening a line.
+
+use super::master::{Master, Request, Stream};
+use super::recorder::Recorder;
+use super::tap::Tap;
+use super::tcp::{self, Remote};
+use super::timing::{SIMULATED_BAUD, Timing};
+use super::{Answer, Fault};
+use crate::config::{BusConfig, LineConfig};
+use crate::serial;
+use crate::sim::{self, Actuators};
+use shared::encode::Read;
+use std::io;
+use tokio::time::Instant;
+
+/// An open line.
+#[derive(Debug)]
+pub enum Line {
+    /// RTU or ASCII over any stream; boxed because it is much larger than the other.
+    Serial(Box<Master>),
+    /// Modbus TCP.
+    Tcp(Remote),
+}
+
+impl Line {
+    /// Opens the line of a bus. `actuators` are those of a simulated one.
+    pub async fn open(
+        bus: &BusConfig,
+        recorder: Recorder,
+        actuators: &Actuators,
+    ) -> io::Result<Self> {
+        let framing = bus.line.framing();
+        let timing = Timing::of(bus);
+        let stream: Box<dyn Stream> = match &bus.line {
+            LineConfig::Tcp { host } => {
+                let remote = Remote::connect(host, bus.timeout, recorder).await?;
+                return Ok(Self::Tcp(remote));
+            }
+            LineConfig::Serial {
+                port, baud, mode, ..
+            } => Box::new(serial::open(port, *baud, *mode)?),
+            LineConfig::RtuOverTcp { host } => Box::new(tcp::connect(host).await?),
+            LineConfig::Simulator => {
+                let (near, far) = tokio::io::duplex(4096);
+                let actuators = actuators.clone();
+                tokio::spawn(async move {
+                    sim::serve_rtu(far, &actuators, sim::Pace::of(SIMULATED_BAUD)).await
+                });
+                Box::new(near)
+            }
+        };
+        let tap = Tap::new(stream, framing, recorder);
+        Ok(Self::Serial(Box::new(Master::new(tap, framing, timing))))
+    }
+
+    /// Reads once.
+    pub async fn read(&mut self, unit: u8, read: Read) -> Result<Answer, Fault> {
+        match self {
+            Self::Serial(master) => {
+                let request = Request {
+                    unit,
+                    pdu: &read.pdu(),
+                    response_len: read.response_len(),
+                };
+                master.exchange(request).await
+            }
+            Self::Tcp(remote) => remote.read(unit, read).await,
+        }
+    }
+
+    /// Asks a device to repeat a number (FC 08, sub-function 0): whatever it said before is over.
+    pub async fn echo(&mut self, unit: u8, nonce: u16) -> Result<Answer, Fault> {
+        let Self::Serial(master) = self else {
+            // On TCP an answer names its request, and a connection in doubt was closed.
+            return Ok(Answer {
+                pdu: Vec::new(),
+                latency: std::time::Duration::ZERO,
+            });
+        };
+        let [high, low] = nonce.to_be_bytes();
+        let pdu = [8, 0, 0, high, low];
+        let request = Request {
+            unit,
+            pdu: &pdu,
+            response_len: pdu.len(),
+        };
+        master.exchange(request).await
+    }
+
+    /// Listens while there is nothing to ask. Ends only if the line is lost. Safe to cancel.
+    pub async fn listen(&mut self) -> io::Error {
+        match self {
+            Self::Serial(master) => master.listen().await,
+            Self::Tcp(_) => std::future::pending().await,
+        }
+    }
+
+    /// When bytes last came that nobody waited for.
+    pub fn stray(&self) -> Option<Instant> {
+        match self {
+            Self::Serial(master) => master.stray(),
+            Self::Tcp(_) => None,
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Everything that runs: the buses, their devices, and what is known of both.
+
+use crate::bus::board::Board;
+use crate::bus::recorder::Recorder;
+use crate::bus::{self, ClientId, Handle};
+use crate::clock::Clock;
+use crate::config::{Config, DeviceConfig, LineConfig};
+use crate::sim::Actuators;
+use shared::proto::{self, ToPage, VERSION};
+use std::sync::atomic::{AtomicU64, Ordering};
+use tokio::sync::watch;
+
+/// A running plant.
+#[derive(Debug)]
+pub struct Plant {
+    clock: Clock,
+    buses: Vec<(proto::Bus, Handle)>,
+    devices: Vec<Device>,
+    board: Board,
+    activity: watch::Sender<u64>,
+    clients: AtomicU64,
+}
+
+/// A device and the way to it.
+#[derive(Debug)]
+struct Device {
+    info: proto::DeviceInfo,
+    bus: usize,
+    /// Its index on its bus.
+    at: usize,
+}
+
+impl Plant {
+    /// Starts an actor for each bus.
+    #[must_use]
+    pub fn start(config: &Config) -> Self {
+        let clock = Clock::start();
+        let activity = watch::Sender::new(0);
+        let board = Board::new(activity.clone());
+        let mut devices = Vec::new();
+        let mut buses = Vec::new();
+        for (index, bus) in config.buses.iter().enumerate() {
+            let own: Vec<DeviceConfig> = config
+                .devices
+                .iter()
+                .filter(|d| d.bus == index)
+                .cloned()
+                .collect();
+            let simulated = bus.line == LineConfig::Simulator;
+            devices.extend(own.iter().enumerate().map(|(at, device)| Device {
+                info: proto::DeviceInfo {
+                    tag: device.tag.clone(),
+                    kind: device.device.key().into(),
+                    bus: bus.name.clone(),
+                    unit: device.unit,
+                    description: device.description.clone(),
+                },
+                bus: index,
+                at,
+            }));
+            let info = proto::Bus {
+                name: bus.name.clone(),
+                line: bus.line.to_string(),
+                framing: bus.line.framing().key().into(),
+                simulated,
+            };
+            let actuators = Actuators::new(own.iter().filter(|_| simulated), clock);
+            let recorder = Recorder::new(&bus.name, clock, activity.clone());
+            let handle = bus::start(bus.clone(), &own, actuators, clock, board.clone(), recorder);
+            buses.push((info, handle));
+        }
+        Self {
+            clock,
+            buses,
+            devices,
+            board,
+            activity,
+            clients: AtomicU64::new(0),
+        }
+    }
+
+    /// The first message to a page.
+    #[must_use]
+    pub fn hello(&self) -> ToPage {
+        ToPage::Hello {
+            version: VERSION,
+            app: concat!("Valvescope ", env!("CARGO_PKG_VERSION")).into(),
+            run: self.clock.run(),
+            now_us: self.clock.now().get(),
+            wall_ms: self.clock.wall_ms(),
+            read_only: true,
+            buses: self.buses.iter().map(|(info, _)| info.clone()).collect(),
+            devices: self.devices.iter().map(|d| d.info.clone()).collect(),
+        }
+    }
+
+    /// A number for a new client.
+    pub fn client(&self) -> ClientId {
+        ClientId(self.clients.fetch_add(1, Ordering::Relaxed))
+    }
+
+    /// The clock of this run.
+    #[must_use]
+    pub const fn clock(&self) -> Clock {
+        self.clock
+    }
+
+    /// States of lines and devices.
+    #[must_use]
+    pub const fn board(&self) -> &Board {
+        &self.board
+    }
+
+    /// Told whenever there is a new capture or state.
+    #[must_use]
+    pub fn activity(&self) -> watch::Receiver<u64> {
+        self.activity.subscribe()
+    }
+
+    /// All buses.
+    pub fn buses(&self) -> impl Iterator<Item = &Handle> {
+        self.buses.iter().map(|(_, handle)| handle)
+    }
+
+    /// The bus with this name.
+    #[must_use]
+    pub fn bus(&self, name: &str) -> Option<&Handle> {
+        let found = self.buses.iter().find(|(info, _)| info.name == name);
+        found.map(|(_, handle)| handle)
+    }
+
+    /// The bus of a device, and the index of the device on it.
+    #[must_use]
+    pub fn device(&self, tag: &str) -> Option<(&Handle, usize)> {
+        let device = self.devices.iter().find(|d| d.info.tag == tag)?;
+        let (_, handle) = self.buses.get(device.bus)?;
+        Some((handle, device.at))
+    }
+}

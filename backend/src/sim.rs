@@ -1,0 +1,259 @@
+//! Simulated actuators on lines: behind the built-in plant, a TCP port or a serial port.
+//!
+//! What the actuators do is in `shared::sim`; here are only their lines and their time.
+
+use crate::bus::timing::gap;
+use crate::clock::Clock;
+use crate::config::DeviceConfig;
+use shared::device::Device;
+use shared::encode::frame;
+use shared::frame::Framing;
+use shared::frame::check::crc_holds;
+use shared::map::row::Model;
+use shared::pdu::length::{self, Length};
+use shared::sim::{Icon3000, Programme};
+use std::io;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::Semaphore;
+use tokio::time::{Instant, sleep_until, timeout};
+
+/// TCP connections that may be open at once.
+const MAX_CONNECTIONS: usize = 32;
+/// A TCP client that is silent for so long is let go.
+const IDLE: Duration = Duration::from_secs(300);
+/// Unit address by which a device on Modbus TCP is meant whatever its own address is.
+/// Source: Modbus Messaging on TCP/IP V1.0b, section 4.4.1.2.
+const DIRECT: u8 = 255;
+/// Exception "gateway target device failed to respond".
+const NO_TARGET: u8 = 0x0B;
+
+/// The actuators of one line. Clones are the same actuators.
+#[derive(Clone, Debug)]
+pub struct Actuators {
+    units: Arc<Mutex<Vec<(u8, Icon3000)>>>,
+    clock: Clock,
+}
+
+/// How fast a simulated line is.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// Time of one character that is waited for; zero if the line itself takes its time.
+    character: Duration,
+    /// How long the device thinks.
+    turn: Duration,
+    /// Silence that ends a frame.
+    gap: Duration,
+}
+
+impl Pace {
+    /// A line that is only pretended, with the speed of a real one.
+    #[must_use]
+    pub fn of(baud: u32) -> Self {
+        Self {
+            character: Duration::from_nanos(11_000_000_000 / u64::from(baud.max(1))),
+            turn: Duration::from_millis(6),
+            gap: gap(baud),
+        }
+    }
+
+    /// A real line, or one where time does not matter.
+    #[must_use]
+    pub const fn real(gap: Duration) -> Self {
+        Self {
+            character: Duration::ZERO,
+            turn: Duration::ZERO,
+            gap,
+        }
+    }
+}
+
+impl Actuators {
+    /// The actuators that a configuration names.
+    #[must_use]
+    pub fn new<'a>(devices: impl IntoIterator<Item = &'a DeviceConfig>, clock: Clock) -> Self {
+        let units = devices
+            .into_iter()
+            .filter_map(|d| {
+                let model = match d.device {
+                    Device::Icon3000v2 => Model::Icon3000v2,
+                    Device::Icon3000 => Model::Icon3000,
+                    Device::None => return None,
+                };
+                // Control valves modulate, the others go from end to end.
+                let programme = if d.tag.starts_with("FV") || d.tag.starts_with("PV") {
+                    Programme::Modulating
+                } else {
+                    Programme::Strokes
+                };
+                Some((d.unit, Icon3000::new(model, &d.tag, programme)))
+            })
+            .collect();
+        Self {
+            units: Arc::new(Mutex::new(units)),
+            clock,
+        }
+    }
+
+    /// The response PDU of a unit; `None` if nobody answers.
+    #[must_use]
+    pub fn answer(&self, unit: u8, pdu: &[u8]) -> Option<Vec<u8>> {
+        let (now, wall) = (self.clock.now(), self.clock.wall_ms() / 1000);
+        let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut answer = None;
+        for (address, device) in units.iter_mut() {
+            device.advance(now, wall);
+            device.overheard(true);
+            if unit == 0 {
+                device.broadcast(pdu);
+            } else if *address == unit {
+                answer = device.answer(pdu);
+            }
+        }
+        answer
+    }
+
+    /// A frame that no unit could read.
+    fn damaged(&self) {
+        let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
+        units.iter_mut().for_each(|(_, d)| d.overheard(false));
+    }
+
+    /// The unit that a TCP client means.
+    fn addressed(&self, unit: u8) -> Option<u8> {
+        let units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
+        match unit {
+            0 => Some(0),
+            DIRECT => units.first().map(|(u, _)| *u),
+            _ => units.iter().map(|(u, _)| *u).find(|u| *u == unit),
+        }
+    }
+}
+
+/// Answers Modbus RTU until the line is closed.
+///
+/// # Errors
+/// If the line fails.
+pub async fn serve_rtu<S>(mut line: S, actuators: &Actuators, pace: Pace) -> io::Result<()>
+where
+    S: AsyncRead + AsyncWrite + Unpin,
+{
+    let mut heard: Vec<u8> = Vec::with_capacity(512);
+    loop {
+        let mut bytes = [0; 512];
+        let count = if heard.is_empty() {
+            line.read(&mut bytes).await?
+        } else {
+            match timeout(pace.gap, line.read(&mut bytes)).await {
+                Ok(read) => read?,
+                Err(_) => {
+                    // The frame is over, whatever it was.
+                    if crc_holds(&heard) {
+                        answer(&mut line, actuators, pace, &heard, Instant::now()).await?;
+                    } else {
+                        actuators.damaged();
+                    }
+                    heard.clear();
+                    continue;
+                }
+            }
+        };
+        if count == 0 {
+            return Ok(());
+        }
+        heard.extend_from_slice(bytes.get(..count).unwrap_or(&[]));
+        let complete = length::request(heard.get(1..).unwrap_or(&[]));
+        if complete == Length::Exact(heard.len().saturating_sub(3)) && crc_holds(&heard) {
+            answer(&mut line, actuators, pace, &heard, Instant::now()).await?;
+            heard.clear();
+        } else if heard.len() > 4096 {
+            heard.clear();
+        }
+    }
+}
+
+async fn answer<S>(
+    line: &mut S,
+    actuators: &Actuators,
+    pace: Pace,
+    request: &[u8],
+    since: Instant,
+) -> io::Result<()>
+where
+    S: AsyncWrite + Unpin,
+{
+    let (Some(unit), Some(pdu)) = (request.first(), request.get(1..request.len() - 2)) else {
+        return Ok(());
+    };
+    let Some(response) = actuators.answer(*unit, pdu) else {
+        return Ok(());
+    };
+    let response = frame(Framing::Rtu, 0, *unit, &response);
+    let characters = u32::try_from(request.len() + response.len()).unwrap_or(u32::MAX);
+    if !pace.character.is_zero() {
+        sleep_until(since + pace.character * characters + pace.turn).await;
+    }
+    line.write_all(&response).await?;
+    Ok(())
+}
+
+/// Answers Modbus TCP until the listener fails.
+///
+/// # Errors
+/// If no connection can be taken any more.
+pub async fn serve_tcp(listener: TcpListener, actuators: Actuators) -> io::Result<()> {
+    let seats = Arc::new(Semaphore::new(MAX_CONNECTIONS));
+    loop {
+        let Ok(seat) = Arc::clone(&seats).acquire_owned().await else {
+            return Ok(());
+        };
+        let (stream, peer) = match listener.accept().await {
+            Ok(accepted) => accepted,
+            // A client that is gone again, or too many open files: neither is the end.
+            Err(error) => {
+                tracing::debug!("no connection: {error}");
+                tokio::time::sleep(Duration::from_millis(50)).await;
+                continue;
+            }
+        };
+        let actuators = actuators.clone();
+        tokio::spawn(async move {
+            if let Err(error) = connection(stream, &actuators).await {
+                tracing::debug!("{peer}: {error}");
+            }
+            drop(seat);
+        });
+    }
+}
+
+async fn connection(mut stream: TcpStream, actuators: &Actuators) -> io::Result<()> {
+    stream.set_nodelay(true)?;
+    loop {
+        let mut header = [0; 7];
+        match timeout(IDLE, stream.read_exact(&mut header)).await {
+            Ok(Ok(_)) => {}
+            _ => return Ok(()),
+        }
+        let [t0, t1, p0, p1, l0, l1, unit] = header;
+        let len = usize::from(u16::from_be_bytes([l0, l1]));
+        if (p0, p1) != (0, 0) || !(2..=254).contains(&len) {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "not Modbus TCP"));
+        }
+        let mut pdu = vec![0; len - 1];
+        stream.read_exact(&mut pdu).await?;
+        let response = match actuators.addressed(unit) {
+            Some(target) => actuators.answer(target, &pdu),
+            None => {
+                let function = pdu.first().copied().unwrap_or(0) | 0x80;
+                Some(vec![function, NO_TARGET])
+            }
+        };
+        if let Some(response) = response {
+            let transaction = u16::from_be_bytes([t0, t1]);
+            let bytes = frame(Framing::Tcp, transaction, unit, &response);
+            stream.write_all(&bytes).await?;
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! What a valve does, from the words of its actuator.
+
+use shared::address::Table;
+use shared::device::Device;
+use shared::image::{Image, Seen};
+use shared::map::row::{DeviceMap, Member, Row};
+use shared::proto::{Block, TableName};
+use shared::scale::Scale;
+use shared::value::Value;
+
+use super::values::{Item, cell};
+
+/// Which way the valve goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Travel {
+    /// It stands.
+    #[default]
+    Stopped,
+    /// It opens.
+    Opening,
+    /// It closes.
+    Closing,
+}
+
+/// A number with its text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// For drawing.
+    pub value: f64,
+    /// As shown, without unit.
+    pub text: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// When it was read, in microseconds.
+    pub at: u64,
+    /// A word if it can't be relied on.
+    pub quality: Option<&'static str>,
+}
+
+/// A bit that is set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Active {
+    /// The word that holds it.
+    pub row: &'static Row,
+    /// The bit.
+    pub member: &'static Member,
+}
+
+/// What a device says about itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overview {
+    /// True once its status was read.
+    pub known: bool,
+    /// Position, 100 is open.
+    pub position: Option<Figure>,
+    /// Torque, negative towards open.
+    pub torque: Option<Figure>,
+    /// Torque limits towards open and close, in the unit of the torque.
+    pub torque_limits: (Option<Figure>, Option<Figure>),
+    /// Which way it goes.
+    pub travel: Travel,
+    /// Closed by its limit.
+    pub close_limit: bool,
+    /// Open by its limit.
+    pub open_limit: bool,
+    /// What happens, in words.
+    pub state: String,
+    /// Who may operate it: `Local`, `Remote`, `Off`.
+    pub mode: &'static str,
+    /// Status bits that are set, those of position and mode left out.
+    pub status: Vec<Active>,
+    /// Alarm bits that are set.
+    pub alarms: Vec<Active>,
+    /// Warning bits that are set.
+    pub warnings: Vec<Active>,
+    /// Other facts: label and text.
+    pub facts: Vec<(&'static str, String)>,
+}
+
+/// Status bits that are said in other words.
+const SAID: [&str; 13] = [
+    "close_limit",
+    "open_limit",
+    "actuator_moving",
+    "opening",
+    "closing",
+    "selector_in_local",
+    "selector_in_remote",
+    "selector_in_off",
+    "alarm",
+    "warning",
+    "channel_1_active",
+    "channel_2_active",
+    "motor_thermostat_closed",
+];
+
+/// Rows that are shown as they are: key and label.
+const FACTS: [(&str, &str); 8] = [
+    ("valve_tag_name", "Tag in the actuator"),
+    ("actuator_serial_number", "Serial number"),
+    ("actuator_identifier", "Identifier"),
+    ("nominal_torque_thrust", "Nominal torque or thrust"),
+    ("modbus_interface_sw_version", "Interface firmware"),
+    ("user_level_logged", "User level"),
+    ("current_date", "Date in the actuator"),
+    ("current_time", "Time in the actuator"),
+];
+
+/// Looks rows up in the holding registers of a map.
+#[derive(Clone, Copy, Debug)]
+struct Lookup<'a> {
+    map: &'static DeviceMap,
+    image: &'a Image,
+}
+
+impl Lookup<'_> {
+    fn row(self, key: &str) -> Option<&'static Row> {
+        self.map.by_key(Table::Holding, key)
+    }
+
+    fn seen(self, key: &str) -> Option<(&'static Row, Seen)> {
+        let row = self.row(key)?;
+        Some((row, self.image.row(row)?))
+    }
+
+    fn figure(self, key: &str) -> Option<Figure> {
+        let (row, seen) = self.seen(key)?;
+        let Value::Number { raw, scale } = seen.judged.value else {
+            return None;
+        };
+        Some(Figure {
+            value: Scale::to_f64(scale, raw),
+            text: scale.apply(raw).to_string(),
+            unit: row.unit,
+            at: seen.at.get(),
+            quality: match seen.judged.quality {
+                shared::value::Quality::Good => None,
+                quality => Some(quality.label()),
+            },
+        })
+    }
+
+    fn active(self, key: &str) -> Vec<Active> {
+        let Some((row, seen)) = self.seen(key) else {
+            return Vec::new();
+        };
+        let Value::Flags { raw, set } = seen.judged.value else {
+            return Vec::new();
+        };
+        set.members
+            .iter()
+            .filter(|m| raw.wrapping_shr(u32::from(m.value)) & 1 == 1)
+            .map(|member| Active { row, member })
+            .collect()
+    }
+
+    fn all(self, keys: &[&str]) -> Vec<Active> {
+        keys.iter().flat_map(|key| self.active(key)).collect()
+    }
+}
+
+impl Overview {
+    /// Reads what is known of a device.
+    #[must_use]
+    pub fn of(device: Device, image: &Image) -> Self {
+        let Some(map) = device.map().filter(|_| device.is_icon()) else {
+            return Self::default();
+        };
+        let look = Lookup { map, image };
+        let bits = look.all(&[
+            "actuator_status_1",
+            "actuator_status_2",
+            "actuator_status_3",
+            "actuator_status_4",
+        ]);
+        let has = |key: &str| bits.iter().any(|b| b.member.key == key);
+        let known = look.seen("actuator_status_1").is_some();
+        let travel = match (has("opening"), has("closing")) {
+            (true, false) => Travel::Opening,
+            (false, true) => Travel::Closing,
+            _ => Travel::Stopped,
+        };
+        let mode = if has("selector_in_remote") {
+            "Remote"
+        } else if has("selector_in_local") {
+            "Local"
+        } else if has("selector_in_off") {
+            "Off"
+        } else {
+            ""
+        };
+        let position = look.figure("actuator_position");
+        let mut overview = Self {
+            known,
+            torque: look.figure("output_torque"),
+            torque_limits: (
+                look.figure("standard_opening_torque"),
+                look.figure("standard_closing_torque"),
+            ),
+            travel,
+            close_limit: has("close_limit"),
+            open_limit: has("open_limit"),
+            mode,
+            alarms: look.all(&["alarms_1", "alarms_2", "alarms_3"]),
+            warnings: look.active("warnings"),
+            facts: facts(look),
+            state: String::new(),
+            position,
+            status: Vec::new(),
+        };
+        overview.state = overview.words(has("actuator_moving"));
+        overview.status = bits
+            .into_iter()
+            .filter(|b| !SAID.contains(&b.member.key))
+            .collect();
+        overview
+    }
+
+    fn words(&self, moving: bool) -> String {
+        if !self.known {
+            return "Not read yet".to_owned();
+        }
+        match (self.travel, self.open_limit, self.close_limit) {
+            (Travel::Opening, ..) => "Opening",
+            (Travel::Closing, ..) => "Closing",
+            (Travel::Stopped, true, true) => "Both limits reported",
+            (Travel::Stopped, true, false) => "Open",
+            (Travel::Stopped, false, true) => "Closed",
+            (Travel::Stopped, false, false) if moving => "Moving",
+            (Travel::Stopped, false, false) => "Stopped between the limits",
+        }
+        .to_owned()
+    }
+}
+
+fn facts(look: Lookup<'_>) -> Vec<(&'static str, String)> {
+    FACTS
+        .iter()
+        .filter_map(|(key, label)| {
+            let cell = cell(Item::Row(look.row(key)?), look.image)?;
+            Some((*label, cell.text))
+        })
+        .collect()
+}
+
+fn holding(start: u16, count: u16) -> Block {
+    Block {
+        table: TableName::Holding,
+        start,
+        count,
+    }
+}
+
+/// The blocks that tell what a valve does: status, position, torque, alarms, clock.
+///
+/// Source: VCIOM-16345-EN, section 7.4: holding registers 3000 to 3030.
+#[must_use]
+pub fn watched(device: Device) -> Vec<Block> {
+    if device.is_icon() {
+        vec![holding(3000, 31)]
+    } else {
+        Vec::new()
+    }
+}
+
+/// Blocks that seldom change, read once when the page of a device is opened: identity, and on the
+/// ICON3000v2 the user level and the torque limits.
+#[must_use]
+pub fn read_once(device: Device) -> Vec<Block> {
+    match device {
+        Device::None => Vec::new(),
+        Device::Icon3000 => vec![holding(3034, 44)],
+        Device::Icon3000v2 => vec![holding(3034, 44), holding(3480, 1), holding(3670, 2)],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::capture::Micros;
+
+    fn image(words: &[(u16, u16)]) -> Image {
+        let mut image = Image::new();
+        for (address, word) in words {
+            let [a, b] = address.to_be_bytes();
+            let [c, d] = word.to_be_bytes();
+            image
+                .absorb(&[3, a, b, 0, 1], &[3, 2, c, d], Micros::new(9))
+                .unwrap();
+        }
+        image
+    }
+
+    #[test]
+    fn a_moving_valve_is_told_in_words() {
+        let image = image(&[
+            (3001, 0x00A4),
+            (3002, 0x0002),
+            (3004, 452),
+            (3005, 0xFFE9),
+            (3009, 4),
+            (3010, 1),
+        ]);
+        let seen = Overview::of(Device::Icon3000v2, &image);
+        assert_eq!(seen.state, "Opening");
+        assert_eq!(seen.mode, "Remote");
+        assert_eq!(seen.travel, Travel::Opening);
+        assert_eq!(seen.position.unwrap().text, "45.2");
+        assert_eq!(seen.torque.unwrap().text, "-23");
+        assert_eq!(seen.alarms.len(), 1);
+        assert_eq!(seen.alarms[0].member.key, "motor_thermostat");
+        assert_eq!(seen.warnings[0].member.key, "hi_temperature");
+        assert!(seen.status.iter().all(|a| !SAID.contains(&a.member.key)));
+    }
+
+    #[test]
+    fn limits_and_silence() {
+        let closed = Overview::of(Device::Icon3000, &image(&[(3001, 1)]));
+        assert_eq!(closed.state, "Closed");
+        let none = Overview::of(Device::Icon3000, &Image::new());
+        assert_eq!(none.state, "Not read yet");
+        assert_eq!(Overview::of(Device::None, &Image::new()), Overview::default());
+    }
+
+    #[test]
+    fn the_blocks_are_in_the_map() {
+        for device in [Device::Icon3000, Device::Icon3000v2] {
+            let map = device.map().unwrap();
+            for block in watched(device).into_iter().chain(read_once(device)) {
+                let read = block.read().unwrap();
+                let rows = map.rows_in(read.table, read.start, read.count());
+                assert!(rows.count() > 0);
+            }
+        }
+    }
+}
