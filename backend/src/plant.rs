@@ -2,7 +2,7 @@
 
 use crate::bus::board::Board;
 use crate::bus::recorder::Recorder;
-use crate::bus::{self, ClientId, Handle};
+use crate::bus::{self, ClientId, Handle, Plug};
 use crate::clock::Clock;
 use crate::config::{Config, DeviceConfig, LineConfig};
 use crate::sim::Actuators;
@@ -64,9 +64,13 @@ impl Plant {
                 framing: bus.line.framing().key().into(),
                 simulated,
             };
-            let actuators = Actuators::new(own.iter().filter(|_| simulated), clock);
+            let plug = if simulated {
+                Plug::Simulated(Actuators::new(&own, clock))
+            } else {
+                Plug::Configured
+            };
             let recorder = Recorder::new(&bus.name, clock, activity.clone());
-            let handle = bus::start(bus.clone(), &own, actuators, clock, board.clone(), recorder);
+            let handle = bus::start(bus.clone(), &own, plug, clock, board.clone(), recorder);
             buses.push((info, handle));
         }
         Self {

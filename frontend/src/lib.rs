@@ -6,6 +6,8 @@ pub mod components;
 pub mod decode_store;
 pub mod format;
 pub mod keys;
+pub mod live;
+pub mod markup;
 pub mod pages;
 pub mod router;
 pub mod state;

@@ -109,17 +109,27 @@ impl Page {
             block,
         });
         let start = Instant::now();
+        let before = self.responses();
+        let mut done = None;
         while start.elapsed() < PATIENCE {
+            // The answer is told and its bytes are shown on two ways; either may be first.
+            match done {
+                Some((Outcome::Ok, text)) if self.responses() > before => {
+                    return (Outcome::Ok, text);
+                }
+                Some((outcome, text)) if outcome != Outcome::Ok => return (outcome, text),
+                other => done = other,
+            }
             if let ToPage::Done {
                 id: ID,
                 outcome,
                 text,
             } = self.next()
             {
-                return (outcome, text);
+                done = Some((outcome, text));
             }
         }
-        panic!("no end of the read within {PATIENCE:?}");
+        panic!("no end of the read within {PATIENCE:?}; so far {done:?}");
     }
 
     /// Frames of the bus decoded so far.
@@ -128,16 +138,25 @@ impl Page {
         &self.session
     }
 
+    /// How many sound responses were on the bus so far.
+    fn responses(&self) -> usize {
+        (self.session.first()..self.session.len())
+            .filter(|i| self.is_response(*i))
+            .count()
+    }
+
+    fn is_response(&self, index: u32) -> bool {
+        let frame = self.session.frame(index);
+        frame.is_some_and(|f| f.role == Role::Response && !f.marks.is_damaged())
+    }
+
     /// The data bytes of the last sound response on the bus.
     #[must_use]
     pub fn last_data(&self) -> Option<Vec<u8>> {
         let session = &self.session;
-        let sound = |i: &u32| {
-            session
-                .frame(*i)
-                .is_some_and(|f| f.role == Role::Response && !f.marks.is_damaged())
-        };
-        let index = (session.first()..session.len()).rev().find(sound)?;
+        let index = (session.first()..session.len())
+            .rev()
+            .find(|i| self.is_response(*i))?;
         let pdu = shared::decode::pdu_of(session.bytes(index)?, session.framing())?;
         pdu.get(2..).map(<[u8]>::to_vec)
     }

@@ -1,14 +1,13 @@
 //! The actor of a line: keeps it open, decides what is asked next, and asks.
 
 use super::board::Board;
-use super::open::Line;
+use super::open::{Line, Plug};
 use super::recorder::Recorder;
 use super::timing::Timing;
 use super::unit::{Job, Origin, Unit};
 use super::{Answer, Command, Fault, Handle, INBOX, Report, words};
 use crate::clock::Clock;
 use crate::config::{BusConfig, DeviceConfig};
-use crate::sim::Actuators;
 use shared::proto::{LineState, Outcome, ToPage};
 use std::io;
 use std::time::Duration;
@@ -29,7 +28,7 @@ const AT_ONCE: usize = 64;
 pub fn start(
     bus: BusConfig,
     devices: &[DeviceConfig],
-    actuators: Actuators,
+    plug: Plug,
     clock: Clock,
     board: Board,
     recorder: Recorder,
@@ -44,7 +43,7 @@ pub fn start(
         slot: board.slot(),
         bus,
         units,
-        actuators,
+        plug,
         clock,
         board,
         recorder: recorder.clone(),
@@ -60,7 +59,7 @@ struct Actor {
     bus: BusConfig,
     timing: Timing,
     units: Vec<Unit>,
-    actuators: Actuators,
+    plug: Plug,
     clock: Clock,
     board: Board,
     slot: usize,
@@ -85,7 +84,7 @@ impl Actor {
         let mut wait = FIRST_RETRY;
         let mut said = String::new();
         loop {
-            let opened = Line::open(&self.bus, self.recorder.clone(), &self.actuators).await;
+            let opened = Line::open(&self.bus, self.recorder.clone(), &mut self.plug).await;
             let error = match opened {
                 Ok(mut line) => {
                     wait = FIRST_RETRY;
@@ -282,7 +281,7 @@ impl Actor {
                 return Err(error);
             }
             Err(fault) => {
-                let quarantine = self.timing.quarantine(job.read.response_len());
+                let quarantine = self.timing.quarantine(job.read.response_len(), unit.echo);
                 unit.failed(&fault, quarantine, now);
                 if job.left > 0 {
                     job.left -= 1;

@@ -215,10 +215,10 @@ mod tests {
             let one = frame(framing, 0, 9, &GOOD);
             let two = frame(framing, 0, 9, &[3, 4, 1, 2, 3, 5]);
             check(framing, &[one.as_slice(), &one].concat(), |f| {
-                assert!(!f.two)
+                assert!(!f.two);
             });
             check(framing, &[one.as_slice(), &two].concat(), |f| {
-                assert!(f.two)
+                assert!(f.two);
             });
         }
     }

@@ -24,12 +24,10 @@ pub struct NotARead {
 /// the device identification: what CANopen devices make of the other is their own affair.
 #[must_use]
 pub fn is_read(pdu: &[u8]) -> bool {
-    match pdu {
-        [1..=4 | 7 | 11 | 12 | 17 | 20 | 24, ..] => true,
-        [8, 0, 0, ..] => true,
-        [43, 0x0E, ..] => true,
-        _ => false,
-    }
+    matches!(
+        pdu,
+        [1..=4 | 7 | 11 | 12 | 17 | 20 | 24, ..] | [8, 0, 0, ..] | [43, 0x0E, ..]
+    )
 }
 
 /// Checks a whole frame before its first byte is sent: it must be one read request, complete, and

@@ -15,6 +15,7 @@ mod unit;
 pub(crate) mod words;
 
 pub use actor::start;
+pub use open::Plug;
 
 use shared::encode::Read;
 use shared::proto::Outcome;

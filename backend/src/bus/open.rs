@@ -13,6 +13,16 @@ use shared::encode::Read;
 use std::io;
 use tokio::time::Instant;
 
+/// What is at the other end of a line where the configuration does not say it.
+pub enum Plug {
+    /// The configuration says it all.
+    Configured,
+    /// The simulated plant.
+    Simulated(Actuators),
+    /// A stream that is made anew each time the line is opened; for tests.
+    Stream(Box<dyn FnMut() -> io::Result<Box<dyn Stream>> + Send>),
+}
+
 /// An open line.
 #[derive(Debug)]
 pub enum Line {
@@ -23,30 +33,33 @@ pub enum Line {
 }
 
 impl Line {
-    /// Opens the line of a bus. `actuators` are those of a simulated one.
-    pub async fn open(
-        bus: &BusConfig,
-        recorder: Recorder,
-        actuators: &Actuators,
-    ) -> io::Result<Self> {
+    /// Opens the line of a bus.
+    pub async fn open(bus: &BusConfig, recorder: Recorder, plug: &mut Plug) -> io::Result<Self> {
         let framing = bus.line.framing();
         let timing = Timing::of(bus);
-        let stream: Box<dyn Stream> = match &bus.line {
-            LineConfig::Tcp { host } => {
+        let stream: Box<dyn Stream> = match (&bus.line, plug) {
+            (_, Plug::Stream(make)) => make()?,
+            (LineConfig::Tcp { host }, _) => {
                 let remote = Remote::connect(host, bus.timeout, recorder).await?;
                 return Ok(Self::Tcp(remote));
             }
-            LineConfig::Serial {
-                port, baud, mode, ..
-            } => Box::new(serial::open(port, *baud, *mode)?),
-            LineConfig::RtuOverTcp { host } => Box::new(tcp::connect(host).await?),
-            LineConfig::Simulator => {
+            (
+                LineConfig::Serial {
+                    port, baud, mode, ..
+                },
+                _,
+            ) => Box::new(serial::open(port, *baud, *mode)?),
+            (LineConfig::RtuOverTcp { host }, _) => Box::new(tcp::connect(host).await?),
+            (LineConfig::Simulator, Plug::Simulated(actuators)) => {
                 let (near, far) = tokio::io::duplex(4096);
                 let actuators = actuators.clone();
                 tokio::spawn(async move {
                     sim::serve_rtu(far, &actuators, sim::Pace::of(SIMULATED_BAUD)).await
                 });
                 Box::new(near)
+            }
+            (LineConfig::Simulator, Plug::Configured) => {
+                return Err(io::Error::other("nothing is simulated here"));
             }
         };
         let tap = Tap::new(stream, framing, recorder);

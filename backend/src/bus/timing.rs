@@ -68,10 +68,12 @@ impl Timing {
             .saturating_mul(u32::try_from(count).unwrap_or(u32::MAX))
     }
 
-    /// How long a unit is left alone after a time-out: twice the time that it has to answer.
+    /// How long a unit is left alone after a time-out: twice the time that it has to answer, and
+    /// twice that if it can't be asked for an echo before it is trusted again.
     #[must_use]
-    pub fn quarantine(&self, answer: usize) -> Duration {
-        (self.timeout + self.characters(answer)).saturating_mul(2)
+    pub fn quarantine(&self, answer: usize, echo: bool) -> Duration {
+        let times = if echo { 2 } else { 4 };
+        (self.timeout + self.characters(answer)).saturating_mul(times)
     }
 }
 

@@ -1,51 +1,111 @@
 //! One frame: its bytes and its meaning as one picture.
+//!
+//! Hovering or selecting a byte lights its field and the other way round; who selected does not
+//! scroll, the others do.
 
+use std::collections::BTreeSet;
+
+use leptos::html::{Article, Div};
 use leptos::prelude::*;
 use leptos::task::spawn_local;
-use shared::place::Place;
-use shared::problem::{Problem, Severity};
 use shared::tree::FieldId;
+use wasm_bindgen::JsCast;
 
-use crate::components::facts::FieldFacts;
-use crate::components::hex::HexView;
+use crate::browser::{Narrow, copy, reveal};
 use crate::components::icon::{Glyph, Icon};
-use crate::components::tree::FieldTree;
-use crate::format::{count, thousands};
-use crate::state::selection::Selection;
-use crate::state::summary::{function, role};
+use crate::markup::{facts, frame, hex, tree};
+use crate::state::selection::{Origin, Selection};
+use crate::state::tree::{Facts, Line, all_open, lines, reveal as open_to};
 use crate::state::work::Shown;
 
-/// The field under the pointer, in the tree or through its bytes.
+/// What is selected, with the number of its frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Hovered(pub RwSignal<Option<FieldId>>);
+pub struct Selected(pub RwSignal<Option<(u32, Selection)>>);
 
-/// The bytes of the field under the pointer.
-#[derive(Clone, Copy, Debug)]
-pub struct Marked(pub Memo<Option<Place>>);
-
-/// What is selected in the frame that is shown.
-#[derive(Clone, Copy, Debug)]
-pub struct Selected {
-    all: RwSignal<Option<(u32, Selection)>>,
-    frame: u32,
+/// Everything that the parts of a frame share.
+#[derive(Clone, Copy)]
+struct Parts {
+    shown: Memo<Option<Shown>>,
+    selected: RwSignal<Option<(u32, Selection)>>,
+    hovered: RwSignal<Option<u32>>,
+    toggled: RwSignal<BTreeSet<u32>>,
+    article: NodeRef<Article>,
+    per_row: Signal<usize>,
 }
 
-impl Selected {
-    /// Follows the selection.
-    #[must_use]
-    pub fn get(self) -> Option<Selection> {
-        self.all.get().filter(|(f, _)| *f == self.frame).map(|s| s.1)
+impl Parts {
+    /// The selection, if it is in the frame that is shown.
+    fn selection(self) -> Option<Selection> {
+        let index = self.shown.with(|s| s.as_ref().map(|s| s.index))?;
+        self.selected.get().filter(|(f, _)| *f == index).map(|s| s.1)
     }
 
-    /// Looks at the selection.
-    #[must_use]
-    pub fn get_untracked(self) -> Option<Selection> {
-        untrack(|| self.get())
+    fn select(self, make: impl Fn(&Shown) -> Option<Selection>) {
+        let made = self
+            .shown
+            .with_untracked(|s| s.as_ref().and_then(|s| Some((s.index, make(s)?))));
+        self.selected.set(made);
     }
 
-    /// Selects.
-    pub fn set(self, selection: Option<Selection>) {
-        self.all.set(selection.map(|s| (self.frame, s)));
+    fn toggle(self, id: u32) {
+        self.toggled.update(|t| {
+            if !t.remove(&id) {
+                t.insert(id);
+            }
+        });
+    }
+
+    fn lines(self) -> Vec<Line> {
+        self.shown.with_untracked(|s| {
+            s.as_ref().map_or_else(Vec::new, |s| {
+                self.toggled.with_untracked(|t| lines(&s.decoded, t))
+            })
+        })
+    }
+
+    /// Sets class and tab stop of bytes and fields.
+    fn mark(self) {
+        let Some(article) = self.article.get() else {
+            return;
+        };
+        let hovered = self.hovered.get();
+        let selection = self.selection();
+        let marked = self.shown.with(|s| {
+            let id = FieldId::new(hovered?);
+            s.as_ref()?.decoded.field(id).map(|f| f.place)
+        });
+        let byte_tab = selection.map_or(0, |s| s.byte);
+        each(&article, "[data-offset]", |element, at| {
+            let at = u16::try_from(at).unwrap_or(u16::MAX);
+            class(element, "marked", marked.is_some_and(|p| p.contains(at)));
+            let is_selected = selection.is_some_and(|s| s.place.contains(at));
+            class(element, "selected", is_selected);
+            tab(element, at == byte_tab);
+        });
+        let field = selection.and_then(|s| s.field).map(FieldId::get);
+        each(&article, "[data-field]", |element, id| {
+            class(element, "marked", hovered == Some(id));
+            class(element, "selected", field == Some(id));
+            let chosen = if field == Some(id) { "true" } else { "false" };
+            // Fails only for names that are none.
+            let _infallible = element.set_attribute("aria-selected", chosen);
+            tab(element, field.unwrap_or(0) == id);
+        });
+    }
+
+    fn find(self, attribute: &str, value: u32) -> Option<web_sys::HtmlElement> {
+        let article = self.article.get_untracked()?;
+        let found = article.query_selector(&format!("[{attribute}=\"{value}\"]"));
+        found.ok()??.dyn_into().ok()
+    }
+
+    fn focus(self, attribute: &'static str, value: u32) {
+        request_animation_frame(move || {
+            if let Some(element) = self.find(attribute, value) {
+                // Fails only without a window.
+                let _infallible = element.focus();
+            }
+        });
     }
 }
 
@@ -56,222 +116,320 @@ pub fn FrameDetail(
     /// The frame.
     #[prop(into)]
     shown: Signal<Option<Shown>>,
-    /// What is selected, with the number of its frame.
-    selected: RwSignal<Option<(u32, Selection)>>,
-    /// More about the frame, such as its time.
-    #[prop(optional, into)]
-    aside: Option<Signal<String>>,
-    /// Called to go to the other frame of a pair.
-    on_pair: Callback<u32>,
-) -> impl IntoView {
-    let shown = Memo::new(move |_| shown.get());
-    move || {
-        shown.get().map_or_else(
-            || {
-                view! { <p class="empty">"Select a frame to see its bytes and fields."</p> }
-                    .into_any()
-            },
-            |shown| {
-                view! { <FrameBody shown=shown selected=selected aside=aside on_pair=on_pair/> }
-                    .into_any()
-            },
-        )
-    }
-}
-
-#[component]
-fn FrameBody(
-    /// The frame.
-    shown: Shown,
     /// What is selected.
-    selected: RwSignal<Option<(u32, Selection)>>,
-    /// More about the frame.
-    aside: Option<Signal<String>>,
+    selected: Selected,
+    /// More about the frame, such as its time.
+    #[prop(into, default = Signal::stored(String::new()))]
+    aside: Signal<String>,
     /// Called to go to the other frame of a pair.
     on_pair: Callback<u32>,
 ) -> impl IntoView {
-    let hovered = RwSignal::new(None);
-    let decoded = shown.decoded.clone();
-    let marked = Memo::new(move |_| {
-        let id = hovered.get()?;
-        decoded.field(id).map(|f| f.place)
+    let narrow = use_context::<Narrow>();
+    let parts = Parts {
+        shown: Memo::new(move |_| shown.get()),
+        selected: selected.0,
+        hovered: RwSignal::new(None),
+        toggled: RwSignal::new(BTreeSet::new()),
+        article: NodeRef::new(),
+        per_row: Signal::derive(move || {
+            if narrow.is_some_and(|n| n.0.get()) { 8 } else { 16 }
+        }),
+    };
+    let (hex_node, tree_node) = (NodeRef::<Div>::new(), NodeRef::<Div>::new());
+    let text = move |make: fn(&Shown) -> String| {
+        parts
+            .shown
+            .with(|s| s.as_ref().map_or_else(String::new, make))
+    };
+
+    // Another frame: nothing is hovered or toggled in it.
+    Effect::new(move |_| {
+        parts.shown.track();
+        parts.hovered.set(None);
+        parts.toggled.set(BTreeSet::new());
     });
-    provide_context(Hovered(hovered));
-    provide_context(Marked(marked));
-    provide_context(Selected {
-        all: selected,
-        frame: shown.index,
+    Effect::new(move |_| {
+        let per_row = parts.per_row.get();
+        let html = parts
+            .shown
+            .with(|s| s.as_ref().map_or_else(String::new, |s| hex::bytes(s, per_row)));
+        if let Some(node) = hex_node.get() {
+            node.set_inner_html(&html);
+        }
+        untrack(|| parts.mark());
     });
+    Effect::new(move |_| {
+        let html = parts.shown.with(|s| {
+            s.as_ref().map_or_else(String::new, |s| {
+                parts.toggled.with(|t| tree::tree(&s.decoded, t))
+            })
+        });
+        if let Some(node) = tree_node.get() {
+            node.set_inner_html(&html);
+        }
+        untrack(|| parts.mark());
+    });
+    Effect::new(move |_| parts.mark());
+    Effect::new(move |_| {
+        if let Some(selection) = parts.selection() {
+            come_into_view(parts, selection);
+        }
+    });
+
+    let facts = move || {
+        let field = parts.selection().and_then(|s| s.field);
+        let facts = parts.shown.with(|s| Facts::of(&s.as_ref()?.decoded, field?));
+        facts.map_or_else(
+            || "Select a field or a byte to see where it is described.".to_owned(),
+            |f| facts::field(&f),
+        )
+    };
+    let expand = move |_| {
+        let all = parts
+            .shown
+            .with_untracked(|s| s.as_ref().map_or_else(BTreeSet::new, |s| all_open(&s.decoded)));
+        parts
+            .toggled
+            .update(|t| *t = if t.is_empty() { all } else { BTreeSet::new() });
+    };
+    let is_empty = move || parts.shown.with(Option::is_none);
     view! {
-        <article class="detail" data-testid="frame-detail" aria-label="Frame">
-            <FrameHead shown=shown.clone() aside=aside on_pair=on_pair/>
-            <FrameProblems shown=shown.clone()/>
-            <HexView shown=shown.clone()/>
-            <FieldTree shown=shown.clone()/>
-            <FieldFacts shown=shown/>
+        <p class="empty" hidden=move || !is_empty()>
+            "Select a frame to see its bytes and fields."
+        </p>
+        <article
+            class="detail"
+            data-testid="frame-detail"
+            aria-label="Frame"
+            hidden=is_empty
+            node_ref=parts.article
+            on:click=move |event| on_click(&event, parts, on_pair)
+            on:dblclick=move |event| {
+                if let Some(id) = number(&event, "data-field") {
+                    parts.toggle(id);
+                }
+            }
+            on:mouseover=move |event| parts.hovered.set(hovered(&event, parts))
+            on:mouseleave=move |_| parts.hovered.set(None)
+        >
+            <header class="detail-head">
+                <div inner_html=move || {
+                    let aside = aside.get();
+                    parts.shown.with(|s| s.as_ref().map_or_else(String::new, |s| frame::title(s, &aside)))
+                }></div>
+                <div class="actions">
+                    <CopyButtons/>
+                </div>
+            </header>
+            <ul class="frame-problems" inner_html=move || text(frame::problems)></ul>
+            <div
+                class="hex"
+                class:hex-8=move || parts.per_row.get() == 8
+                role="grid"
+                aria-label="Bytes"
+                node_ref=hex_node
+                on:keydown=move |event| hex_key(&event, parts)
+            ></div>
+            <div class="tree-head">
+                <span>"Field"</span>
+                <span class="right">"Value"</span>
+                <span>"Raw"</span>
+                <span>"Source"</span>
+                <button class="quiet-button" data-testid="expand-all" on:click=expand>
+                    {move || if parts.toggled.with(BTreeSet::is_empty) { "All bits" } else { "Fewer" }}
+                </button>
+            </div>
+            <div
+                class="tree"
+                role="tree"
+                aria-label="Fields"
+                node_ref=tree_node
+                on:keydown=move |event| tree_key(&event, parts)
+            ></div>
+            <div class="facts" data-testid="field-facts" inner_html=facts></div>
         </article>
     }
 }
 
+/// Copies the frame in three forms; the listener is the article's.
 #[component]
-fn FrameHead(
-    /// The frame.
-    shown: Shown,
-    /// More about the frame.
-    aside: Option<Signal<String>>,
-    /// Called to go to the other frame of a pair.
-    on_pair: Callback<u32>,
-) -> impl IntoView {
-    let frame = shown.frame;
-    let title = if frame.is_noise() {
-        "Noise".to_owned()
-    } else {
-        format!("{} · {}", function(&frame), role(frame.role))
-    };
-    let code = (!frame.is_noise())
-        .then(|| format!("unit {} · function {:02X}", frame.unit, frame.function));
-    let place = format!(
-        "offset {} · {}",
-        thousands(frame.offset),
-        count(u64::from(frame.len), "byte")
-    );
-    let pair = frame.pair().map(|pair| {
-        let words = if pair < shown.index {
-            format!("answers frame {pair}")
-        } else {
-            format!("answered by frame {pair}")
-        };
-        view! {
-            <button class="link" data-testid="frame-pair" on:click=move |_| on_pair.run(pair)>
-                {words}
-            </button>
+fn CopyButtons() -> impl IntoView {
+    ["Hex", "Text", "JSON"]
+        .map(|form| {
+            view! {
+                <button
+                    class="button"
+                    data-copy=form
+                    data-testid=format!("copy-{}", form.to_ascii_lowercase())
+                    aria-label=format!("Copy as {form}")
+                >
+                    <Icon glyph=Glyph::Copy/>
+                    <span aria-live="polite">{form}</span>
+                </button>
+            }
+            .into_any()
+        })
+        .into_iter()
+        .collect::<Vec<_>>()
+}
+
+fn come_into_view(parts: Parts, selection: Selection) {
+    if selection.origin != Origin::Tree
+        && let Some(id) = selection.field
+    {
+        if parts.lines().iter().all(|line| line.id != id) {
+            parts.shown.with_untracked(|s| {
+                if let Some(shown) = s {
+                    parts.toggled.update(|t| open_to(&shown.decoded, t, id));
+                }
+            });
+        }
+    }
+    request_animation_frame(move || {
+        let byte = parts.find("data-offset", u32::from(selection.place.start));
+        if let Some(byte) = byte.filter(|_| selection.origin != Origin::Hex) {
+            reveal(&byte);
+        }
+        let line = selection
+            .field
+            .and_then(|id| parts.find("data-field", id.get()));
+        if let Some(line) = line.filter(|_| selection.origin != Origin::Tree) {
+            reveal(&line);
         }
     });
-    let (as_text, as_json) = (shown.clone(), shown.clone());
-    let as_hex = shown.clone();
-    view! {
-        <header class="detail-head">
-            <div>
-                <h2>
-                    <span class="quiet">{format!("#{} ", shown.index)}</span>
-                    {title}
-                </h2>
-                <p class="quiet">
-                    {code} " · " {place} " " {pair} {aside.map(|a| view! { " " {a} })}
-                </p>
-            </div>
-            <div class="actions">
-                <CopyButton
-                    label="Hex"
-                    text=Callback::new(move |()| {
-                        shared::render::Spaced(as_hex.decoded.bytes()).to_string()
-                    })
-                />
-                <CopyButton label="Text" text=Callback::new(move |()| as_text.text())/>
-                <CopyButton label="JSON" text=Callback::new(move |()| as_json.json())/>
-            </div>
-        </header>
-    }
 }
 
-/// A button that copies, and says whether it worked.
-#[component]
-pub fn CopyButton(
-    /// What is copied.
-    label: &'static str,
-    /// Makes the text.
-    text: Callback<(), String>,
-) -> impl IntoView {
-    let (said, say) = signal(label);
-    let copy = move |_| {
-        let text = text.run(());
-        spawn_local(async move {
-            let done = crate::browser::copy(text).await;
-            // The button may be gone by now.
-            let _gone = say.try_set(if done { "Copied" } else { "No clipboard here" });
-            crate::task::sleep(1500).await;
-            let _gone = say.try_set(label);
+fn on_click(event: &web_sys::MouseEvent, parts: Parts, on_pair: Callback<u32>) {
+    if let Some(pair) = number(event, "data-pair") {
+        on_pair.run(pair);
+    } else if let Some(at) = number(event, "data-problem") {
+        parts.select(|s| {
+            let problem = s.decoded.problems().get(usize::try_from(at).ok()?)?;
+            Some(Selection::problem(&s.decoded, problem.place))
         });
-    };
-    view! {
-        <button
-            class="button"
-            aria-label=format!("Copy as {label}")
-            data-testid=format!("copy-{}", label.to_ascii_lowercase())
-            on:click=copy
-        >
-            <Icon glyph=Glyph::Copy/>
-            <span aria-live="polite">{said}</span>
-        </button>
+    } else if let Some(at) = number(event, "data-offset") {
+        let at = u16::try_from(at).unwrap_or(u16::MAX);
+        parts.select(|s| Some(Selection::byte(&s.decoded, at)));
+    } else if let Some(id) = number(event, "data-field") {
+        if within(event, ".tree-chevron").is_some() {
+            parts.toggle(id);
+        } else {
+            parts.select(|s| Selection::field(&s.decoded, FieldId::new(id)));
+        }
+    } else if let Some(button) = within(event, "[data-copy]") {
+        let form = button.get_attribute("data-copy").unwrap_or_default();
+        let text = parts.shown.with_untracked(|s| {
+            s.as_ref().map(|s| match form.as_str() {
+                "JSON" => s.json(),
+                "Text" => s.text(),
+                _ => shared::render::Spaced(s.decoded.bytes()).to_string(),
+            })
+        });
+        spawn_local(say_copied(button, form, text.unwrap_or_default()));
     }
 }
 
-/// The problems of this frame in words; a click shows the bytes.
-#[component]
-fn FrameProblems(
-    /// The frame.
-    shown: Shown,
-) -> impl IntoView {
-    let selected: Selected = expect_context();
-    let items: Vec<_> = shown
-        .decoded
-        .problems()
-        .iter()
-        .map(|problem| {
-            let decoded = shown.decoded.clone();
-            let place = problem.place;
-            let jump = move |_| selected.set(Some(Selection::problem(&decoded, place)));
-            view! {
-                <li>
-                    <button class="problem" data-testid="frame-problem" on:click=jump>
-                        <SeverityMark severity=problem.severity()/>
-                        <span>{problem.to_string()}</span>
-                        <span class="quiet where">{place_words(problem)}</span>
-                    </button>
-                </li>
-            }
-        })
-        .collect();
-    (!items.is_empty()).then(|| view! { <ul class="frame-problems">{items}</ul> })
+/// Copies, and says in the button whether it worked.
+pub async fn say_copied(button: web_sys::Element, label: String, text: String) {
+    let done = copy(text).await;
+    let words = button.query_selector("span").ok().flatten();
+    let say = |text: &str| {
+        if let Some(words) = &words {
+            words.set_text_content(Some(text));
+        }
+    };
+    say(if done { "Copied" } else { "No clipboard" });
+    crate::task::sleep(1500).await;
+    say(&label);
 }
 
-/// Where a problem is, within its frame.
+fn hovered(event: &web_sys::MouseEvent, parts: Parts) -> Option<u32> {
+    number(event, "data-field").or_else(|| {
+        let at = u16::try_from(number(event, "data-offset")?).ok()?;
+        let owner = |s: &Option<Shown>| s.as_ref()?.decoded.owner(at);
+        parts.shown.with_untracked(owner).map(FieldId::get)
+    })
+}
+
+fn hex_key(event: &web_sys::KeyboardEvent, parts: Parts) {
+    let len = parts
+        .shown
+        .with_untracked(|s| s.as_ref().map_or(0, |s| s.decoded.bytes().len()));
+    let at = untrack(|| parts.selection()).map_or(0, |s| usize::from(s.byte));
+    let row = parts.per_row.get_untracked();
+    let next = match event.key().as_str() {
+        "ArrowRight" => at + 1,
+        "ArrowLeft" => at.saturating_sub(1),
+        "ArrowDown" if at + row < len => at + row,
+        "ArrowUp" if at >= row => at - row,
+        "ArrowDown" | "ArrowUp" => at,
+        "Home" => at - at % row,
+        "End" => at - at % row + row - 1,
+        _ => return,
+    };
+    event.prevent_default();
+    let next = u16::try_from(next.min(len.saturating_sub(1))).unwrap_or(u16::MAX);
+    parts.select(|s| Some(Selection::byte(&s.decoded, next)));
+    parts.focus("data-offset", u32::from(next));
+}
+
+fn tree_key(event: &web_sys::KeyboardEvent, parts: Parts) {
+    if event.ctrl_key() || event.alt_key() || event.meta_key() {
+        return;
+    }
+    let lines = parts.lines();
+    let field = untrack(|| parts.selection()).and_then(|s| s.field);
+    let at = lines.iter().position(|l| Some(l.id) == field);
+    match crate::state::tree::step(&event.key(), &lines, at) {
+        crate::state::tree::Step::To(id) => {
+            event.prevent_default();
+            parts.select(|s| Selection::field(&s.decoded, id));
+            parts.focus("data-field", id.get());
+        }
+        crate::state::tree::Step::Toggle(id) => {
+            event.prevent_default();
+            parts.toggle(id.get());
+            parts.focus("data-field", id.get());
+        }
+        crate::state::tree::Step::Nothing => {}
+    }
+}
+
+/// The element around the target of an event that has this selector.
 #[must_use]
-pub fn place_words(problem: &Problem) -> String {
-    let Place { start, len } = problem.place;
-    match len {
-        0 => format!("after byte {}", start.saturating_sub(1)),
-        1 => format!("byte {start}"),
-        _ => format!("bytes {start}–{}", problem.place.end().saturating_sub(1)),
+pub fn within(event: &web_sys::MouseEvent, selector: &str) -> Option<web_sys::Element> {
+    let target = event.target()?.dyn_into::<web_sys::Element>().ok()?;
+    target.closest(selector).ok()?
+}
+
+/// The number in an attribute of the target of an event, or of an element around it.
+#[must_use]
+pub fn number(event: &web_sys::MouseEvent, attribute: &str) -> Option<u32> {
+    let element = within(event, &format!("[{attribute}]"))?;
+    element.get_attribute(attribute)?.parse().ok()
+}
+
+/// Calls `act` for every element with the selector `[attribute]`, with the attribute's number.
+fn each(root: &web_sys::Element, selector: &str, act: impl Fn(&web_sys::Element, u32)) {
+    let Ok(found) = root.query_selector_all(selector) else {
+        return;
+    };
+    let name = selector.trim_matches(['[', ']']);
+    for at in 0..found.length() {
+        let Some(element) = found.item(at) else { continue };
+        let element: web_sys::Element = element.unchecked_into();
+        let value = element.get_attribute(name).and_then(|v| v.parse().ok());
+        if let Some(value) = value {
+            act(&element, value);
+        }
     }
 }
 
-/// The mark of a severity: shape and letter besides colour.
-#[component]
-pub fn SeverityMark(
-    /// How bad.
-    severity: Severity,
-) -> impl IntoView {
-    let (class, path) = match severity {
-        Severity::Error => ("severity error", "M6.5 6.5l7 7M13.5 6.5l-7 7M10 2a8 8 0 1 0 .01 0z"),
-        Severity::Warning => ("severity warning", "M10 2.5l8.5 15h-17zM10 8v4.5M10 15v.2"),
-        Severity::Note => ("severity note", "M10 3a7 7 0 1 0 .01 0M10 9v4.5M10 6.3v.2"),
-    };
-    view! {
-        <svg
-            class=class
-            width="16"
-            height="16"
-            viewBox="0 0 20 20"
-            fill="none"
-            stroke="currentColor"
-            stroke-width="1.8"
-            stroke-linecap="round"
-            stroke-linejoin="round"
-            role="img"
-            aria-label=severity.key()
-        >
-            <path d=path></path>
-        </svg>
-    }
+fn class(element: &web_sys::Element, name: &str, on: bool) {
+    // Fails only for names that are none.
+    let _infallible = element.class_list().toggle_with_force(name, on);
+}
+
+fn tab(element: &web_sys::Element, on: bool) {
+    let _infallible = element.set_attribute("tabindex", if on { "0" } else { "-1" });
 }

@@ -52,7 +52,9 @@ pub enum Glyph {
 }
 
 impl Glyph {
-    const fn path(self) -> &'static str {
+    /// Its lines, in a square of 20 units.
+    #[must_use]
+    pub const fn path(self) -> &'static str {
         match self {
             Self::Decode => "M3 4h4v4H3zM3 12h4v4H3zM13 4h4M11 4h.01M11 8h6M11 12h3M17 12h.01M11 16h6",
             Self::Devices => "M3 9.5v7l7-3.5 7 3.5v-7L10 13zM10 13V5M6.5 5h7M7.5 2.5h5",

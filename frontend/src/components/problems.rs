@@ -7,10 +7,11 @@ use shared::place::Place;
 use shared::problem::Problem;
 use shared::text::TextProblem;
 
-use crate::components::frame_detail::{SeverityMark, place_words};
 use crate::components::windowed::{DrawRow, Windowed};
 use crate::decode_store::DecodeStore;
 use crate::format::count;
+use crate::markup::Markup;
+use crate::markup::frame::{place_words, problem_row};
 use crate::state::findings::Item;
 use crate::state::selection::Selection;
 use crate::state::work::Shown;
@@ -19,7 +20,7 @@ use crate::state::work::Shown;
 const ROWS: usize = 4;
 
 /// Height of a row in pixels.
-const ROW: f64 = 28.0;
+const ROW: i32 = 28;
 
 /// One line of the strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,11 +57,6 @@ pub fn ProblemStrip() -> impl IntoView {
         let [notes, warnings, errors] = store.findings.with(|f| f.counts.map(u64::from));
         (errors + text, warnings, notes)
     });
-    let epoch = RwSignal::new(0_u32);
-    Effect::new(move |_| {
-        entries.track();
-        epoch.update(|e| *e = e.wrapping_add(1));
-    });
     let cursor = RwSignal::new(None);
     Effect::new(move |_| {
         let entry = cursor.get().and_then(|at| entries.with_untracked(|e| e.get(at).copied()));
@@ -68,11 +64,10 @@ pub fn ProblemStrip() -> impl IntoView {
             jump(store, entry);
         }
     });
-    let draw: DrawRow = Arc::new(move |at: usize| {
-        entries
-            .with_untracked(|e| e.get(at).copied())
-            .map(|entry| view! { <ProblemRow entry=entry/> })
-            .into_any()
+    let draw: DrawRow = Arc::new(move |at: usize, html: &mut Markup| {
+        if let Some(entry) = entries.with(|e| e.get(at).copied()) {
+            draw_entry(html, entry);
+        }
     });
     let draw = StoredValue::new(draw);
     let shown = move || entries.with(|e| e.len().min(ROWS));
@@ -116,15 +111,14 @@ pub fn ProblemStrip() -> impl IntoView {
                     <div
                         class="problem-list"
                         style:height=move || {
-                            let rows = u32::try_from(shown()).unwrap_or(0);
-                            format!("{}px", f64::from(rows) * ROW)
+                            let rows = i32::try_from(shown()).unwrap_or(0);
+                            format!("{}px", rows * ROW)
                         }
                     >
                         <Windowed
                             label="Problems"
                             count=Signal::derive(move || entries.with(|e| e.len()))
                             row_height=Signal::stored(ROW)
-                            epoch=epoch
                             cursor=cursor
                             draw=draw.get_value()
                             testid="problem-list"
@@ -136,27 +130,16 @@ pub fn ProblemStrip() -> impl IntoView {
     }
 }
 
-#[component]
-fn ProblemRow(
-    /// What it is about.
-    entry: Entry,
-) -> impl IntoView {
-    let (problem, place) = match entry {
-        Entry::Text(text) => (
-            Problem::new(text.finding, Place::default()),
-            format!("line {}, column {}", text.line, text.column),
-        ),
-        Entry::Frame(item) => (
-            item.problem,
-            format!("#{} · {}", item.frame, place_words(&item.problem)),
-        ),
-    };
-    view! {
-        <div class="problem" data-testid="problem" data-code=problem.code()>
-            <SeverityMark severity=problem.severity()/>
-            <span class="where">{place}</span>
-            <span class="problem-words" title=problem.to_string()>{problem.to_string()}</span>
-        </div>
+fn draw_entry(html: &mut Markup, entry: Entry) {
+    match entry {
+        Entry::Text(text) => {
+            let place = format!("line {}, column {}", text.line, text.column);
+            problem_row(html, &Problem::new(text.finding, Place::default()), &place);
+        }
+        Entry::Frame(item) => {
+            let place = format!("#{} · {}", item.frame, place_words(&item.problem));
+            problem_row(html, &item.problem, &place);
+        }
     }
 }
 

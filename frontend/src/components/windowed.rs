@@ -1,16 +1,27 @@
 //! A list that draws only the rows in view, however many there are.
 
 use core::ops::Range;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use leptos::html::Div;
 use leptos::prelude::*;
 use wasm_bindgen::prelude::*;
 
-use crate::state::window::{Window, moved};
+use crate::markup::Markup;
+use crate::state::window::{Slice, Window, moved};
 
-/// Draws one row.
-pub type DrawRow = Arc<dyn Fn(usize) -> AnyView + Send + Sync>;
+/// Draws one row; it is drawn again when a signal that it follows changes.
+pub type DrawRow = Arc<dyn Fn(usize, &mut Markup) + Send + Sync>;
+
+/// A row as it stands in the page.
+#[derive(Debug)]
+struct Slot {
+    element: web_sys::Element,
+    at: usize,
+    chosen: bool,
+    html: String,
+}
 
 /// A list of rows of equal height. Arrow keys, Home, End and paging move the cursor.
 #[component]
@@ -22,10 +33,7 @@ pub fn Windowed(
     count: Signal<usize>,
     /// Height of a row in pixels.
     #[prop(into)]
-    row_height: Signal<f64>,
-    /// Rows are drawn anew when this changes.
-    #[prop(into, default = Signal::stored(0))]
-    epoch: Signal<u32>,
+    row_height: Signal<i32>,
     /// The row under the cursor.
     cursor: RwSignal<Option<usize>>,
     /// Draws a row.
@@ -35,31 +43,30 @@ pub fn Windowed(
     follow: bool,
     /// Told which rows are in view.
     #[prop(optional)]
-    in_view: Option<WriteSignal<Range<usize>>>,
-    /// Called when Enter is pressed on a row.
+    in_view: Option<RwSignal<Range<usize>>>,
+    /// Called when Enter is pressed on a row or it is clicked, with the element that was clicked.
     #[prop(optional)]
-    on_enter: Option<Callback<usize>>,
+    on_open: Option<Callback<(usize, Option<web_sys::Element>)>>,
     /// `data-testid` of the list.
     #[prop(default = "list")]
     testid: &'static str,
 ) -> impl IntoView {
     let list = NodeRef::<Div>::new();
-    let (scroll, set_scroll) = signal(0.0_f64);
-    let (height, set_height) = signal(600.0_f64);
+    let rows = NodeRef::<Div>::new();
+    let scroll = RwSignal::new(0_i32);
+    let height = RwSignal::new(600_i32);
     let at_end = StoredValue::new(true);
     let window = move || Window {
         count: count.get(),
-        row: row_height.get(),
-        view: height.get(),
+        row: f64::from(row_height.get()),
+        view: f64::from(height.get()),
     };
-    let slice = Memo::new(move |_| window().at(scroll.get()));
-
-    observe_height(list, set_height);
+    observe_height(list, height);
     let on_scroll = move |_| {
         if let Some(list) = list.get_untracked() {
-            let top = f64::from(list.scroll_top());
-            set_scroll.set(top);
-            at_end.set_value(top + height.get_untracked() + 4.0 >= window().spacer());
+            let top = list.scroll_top();
+            scroll.set(top);
+            at_end.set_value(top + height.get_untracked() + 4 >= list.scroll_height());
         }
     };
     let scroll_to = move |top: f64| {
@@ -68,129 +75,191 @@ pub fn Windowed(
         }
     };
 
+    let slots = RefCell::new(Vec::<Slot>::new());
+    Effect::new(move |_| {
+        let Some(rows) = rows.get() else { return };
+        let slice = window().at(f64::from(scroll.get()));
+        place(&rows, &slice);
+        let chosen = cursor.get();
+        fill(&rows, &mut slots.borrow_mut(), &slice, chosen, testid, &draw);
+    });
+
     // The cursor is always in view.
     Effect::new(move |_| {
         if let Some(at) = cursor.get() {
-            let now = scroll.get_untracked();
-            let window = untrack(window);
-            let wanted = window.reveal(at, now);
+            let now = f64::from(scroll.get_untracked());
+            let wanted = untrack(window).reveal(at, now);
             if (wanted - now).abs() > 0.5 {
                 // The spacer may not have grown yet.
                 request_animation_frame(move || scroll_to(wanted.ceil()));
             }
         }
     });
-    if follow {
-        Effect::new(move |_| {
-            let spacer = window().spacer();
-            if at_end.get_value() && cursor.with_untracked(Option::is_none) {
-                request_animation_frame(move || scroll_to(spacer));
+    Effect::new(move |_| {
+        let window = window();
+        if follow && at_end.get_value() && cursor.with_untracked(Option::is_none) {
+            request_animation_frame(move || scroll_to(window.spacer()));
+        }
+    });
+    Effect::new(move |_| {
+        if let Some(in_view) = in_view {
+            let now = window().visible(f64::from(scroll.get()));
+            if in_view.with_untracked(|before| *before != now) {
+                in_view.set(now);
             }
-        });
-    }
-    if let Some(in_view) = in_view {
-        Effect::new(move |before: Option<Range<usize>>| {
-            let now = window().visible(scroll.get());
-            if before.as_ref() != Some(&now) {
-                in_view.set(now.clone());
-            }
-            now
-        });
-    }
+        }
+    });
 
+    let open = move |at: usize, target: Option<web_sys::Element>| {
+        if let Some(on_open) = on_open {
+            on_open.run((at, target));
+        }
+    };
     let on_key = move |event: web_sys::KeyboardEvent| {
         if event.ctrl_key() || event.alt_key() || event.meta_key() {
             return;
         }
         let key = event.key();
-        if key == "Enter"
-            && let (Some(at), Some(enter)) = (cursor.get_untracked(), on_enter)
-        {
-            event.prevent_default();
-            enter.run(at);
-        }
         let at = cursor.get_untracked();
+        if let (Some(at), true) = (at, key == "Enter") {
+            event.prevent_default();
+            open(at, None);
+        }
         let next = moved(&key, at, count.get_untracked(), untrack(window).page());
         if let Some(next) = next {
             event.prevent_default();
             cursor.set(Some(next));
         }
     };
-    let active = move || cursor.get().map(|at| format!("{testid}-{at}"));
-    let draw = StoredValue::new(draw);
-
+    let on_click = move |event: web_sys::MouseEvent| {
+        let target = event
+            .target()
+            .and_then(|t| t.dyn_into::<web_sys::Element>().ok());
+        let at = target
+            .as_ref()
+            .and_then(|t| t.closest("[data-at]").ok().flatten())
+            .and_then(|row| row.get_attribute("data-at")?.parse().ok());
+        if let Some(at) = at {
+            cursor.set(Some(at));
+            open(at, target);
+        }
+    };
     view! {
         <div
             class="windowed"
             role="listbox"
             tabindex="0"
             aria-label=label
-            aria-activedescendant=active
+            aria-activedescendant=move || cursor.get().map(|at| format!("{testid}-{at}"))
             data-testid=testid
             node_ref=list
             on:scroll=on_scroll
             on:keydown=on_key
+            on:click=on_click
         >
-            <div class="windowed-space" style:height=move || format!("{}px", window().spacer())>
-                <div
-                    class="windowed-rows"
-                    style:transform=move || format!("translateY({}px)", slice.get().top)
-                >
-                    <For
-                        each=move || {
-                            let epoch = epoch.get();
-                            slice.get().rows.map(move |at| (at, epoch))
-                        }
-                        key=|key| *key
-                        children=move |(at, _)| {
-                            let chosen = move || cursor.get() == Some(at);
-                            view! {
-                                <div
-                                    class="windowed-row"
-                                    class:selected=chosen
-                                    role="option"
-                                    id=format!("{testid}-{at}")
-                                    aria-selected=move || chosen().to_string()
-                                    aria-setsize=move || count.get().to_string()
-                                    aria-posinset=(at + 1).to_string()
-                                    style:height=move || format!("{}px", row_height.get())
-                                    on:click=move |_| cursor.set(Some(at))
-                                >
-                                    {draw.with_value(|draw| draw(at))}
-                                </div>
-                            }
-                        }
-                    />
-                </div>
+            <div
+                class="windowed-space"
+                style:height=move || format!("{}px", whole(window().spacer()))
+            >
+                <div class="windowed-rows" role="presentation" node_ref=rows></div>
             </div>
         </div>
     }
 }
 
+/// Moves the rows to where they belong.
+fn place(rows: &web_sys::HtmlElement, slice: &Slice) {
+    let top = format!("translateY({}px)", whole(slice.top));
+    // Fails only for names that are none.
+    let _infallible = rows.style().set_property("transform", &top);
+}
+
+/// Brings the rows up to date; one that did not change is left alone.
+fn fill(
+    rows: &web_sys::Element,
+    slots: &mut Vec<Slot>,
+    slice: &Slice,
+    chosen: Option<usize>,
+    testid: &str,
+    draw: &DrawRow,
+) {
+    while slots.len() > slice.rows.len() {
+        if let Some(slot) = slots.pop() {
+            slot.element.remove();
+        }
+    }
+    while slots.len() < slice.rows.len() {
+        let Some(element) = new_row(rows) else { return };
+        slots.push(Slot {
+            element,
+            at: usize::MAX,
+            chosen: false,
+            html: String::new(),
+        });
+    }
+    for (slot, at) in slots.iter_mut().zip(slice.rows.clone()) {
+        let mut html = Markup::new();
+        draw(at, &mut html);
+        let html = html.finish();
+        let is_chosen = chosen == Some(at);
+        if slot.at != at {
+            set(&slot.element, "data-at", &at.to_string());
+            set(&slot.element, "id", &format!("{testid}-{at}"));
+            set(&slot.element, "aria-posinset", &(at + 1).to_string());
+        }
+        if slot.at != at || slot.chosen != is_chosen {
+            let class = if is_chosen {
+                "windowed-row selected"
+            } else {
+                "windowed-row"
+            };
+            set(&slot.element, "class", class);
+            let selected = if is_chosen { "true" } else { "false" };
+            set(&slot.element, "aria-selected", selected);
+        }
+        if slot.html != html {
+            slot.element.set_inner_html(&html);
+            slot.html = html;
+        }
+        slot.at = at;
+        slot.chosen = is_chosen;
+    }
+}
+
+fn new_row(rows: &web_sys::Element) -> Option<web_sys::Element> {
+    let element = document().create_element("div").ok()?;
+    set(&element, "role", "option");
+    rows.append_child(&element).ok()?;
+    Some(element)
+}
+
+fn set(element: &web_sys::Element, name: &str, value: &str) {
+    // Fails only for names that are none.
+    let _infallible = element.set_attribute(name, value);
+}
+
 /// Keeps the height of the list's window.
-fn observe_height(list: NodeRef<Div>, set: WriteSignal<f64>) {
+fn observe_height(list: NodeRef<Div>, height: RwSignal<i32>) {
     list.on_load(move |element| {
         let watched = element.clone();
         let closure = Closure::<dyn Fn()>::new(move || {
-            let height = f64::from(watched.client_height());
+            let now = watched.client_height();
             // The list may be hidden, or gone already.
-            if height > 0.0 {
-                let _gone = set.try_set(height);
+            if now > 0 && height.try_get_untracked().is_some_and(|h| h != now) {
+                let _gone = height.try_set(now);
             }
         });
         if let Ok(observer) = web_sys::ResizeObserver::new(closure.as_ref().unchecked_ref()) {
             observer.observe(&element);
-            let kept = StoredValue::new_local((observer, closure));
-            on_cleanup(move || {
-                let _gone = kept.try_with_value(|(observer, _)| observer.disconnect());
-            });
+            // Lives until the element does not.
+            closure.forget();
         }
     });
 }
 
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "the spacer is below eight million pixels"
+    reason = "the spacer is at most eight million pixels"
 )]
 fn whole(pixels: f64) -> i32 {
     pixels as i32

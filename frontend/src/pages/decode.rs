@@ -6,15 +6,16 @@ use leptos::prelude::*;
 use shared::tree::Decoded;
 
 use crate::browser::{Narrow, focus};
-use crate::components::frame_detail::FrameDetail;
-use crate::components::frame_list::{FrameListHead, FrameRow};
+use crate::components::frame_detail::{FrameDetail, Selected};
 use crate::components::icon::{Glyph, Icon};
 use crate::components::input::DecodeInput;
 use crate::components::problems::ProblemStrip;
-use crate::components::windowed::Windowed;
+use crate::components::windowed::{DrawRow, Windowed};
 use crate::decode_store::DecodeStore;
 use crate::format::thousands;
 use crate::keys::on_action;
+use crate::markup::Markup;
+use crate::markup::frame::{Beside, head, row};
 use crate::router::Router;
 use crate::state::samples::{SAMPLES, by_key};
 use crate::state::shortcuts::Action;
@@ -57,9 +58,10 @@ pub fn DecodePage() -> impl IntoView {
         store.cursor.set(usize::try_from(index).ok());
     });
     let scratch = StoredValue::new(Decoded::default());
-    let draw = Arc::new(move |at: usize| {
+    let draw: DrawRow = Arc::new(move |at: usize, html: &mut Markup| {
         let index = u32::try_from(at).unwrap_or(u32::MAX);
-        let device = store.device.get_untracked();
+        let device = store.device.get();
+        store.epoch.track();
         let summary = store.work.with_untracked(|w| {
             let work = w.as_ref()?;
             let context = work.context(device);
@@ -67,16 +69,22 @@ pub fn DecodePage() -> impl IntoView {
                 .try_update_value(|s| summary(&work.session, index, &context, s))
                 .flatten()
         });
-        summary
-            .map(|summary| {
-                let offset = thousands(summary.frame.offset);
-                view! {
-                    <div class="open-detail" on:click=move |_| set_in_detail.set(true)>
-                        <FrameRow index=index summary=summary second=offset latency=None on_pair=go/>
-                    </div>
-                }
-            })
-            .into_any()
+        if let Some(summary) = summary {
+            let beside = Beside {
+                place: thousands(summary.frame.offset),
+                latency: None,
+            };
+            row(html, index, &summary, &beside);
+        }
+    });
+    let on_open = Callback::new(move |(_, target): (usize, Option<web_sys::Element>)| {
+        let pair = target
+            .and_then(|t| t.closest("[data-pair]").ok().flatten())
+            .and_then(|t| t.get_attribute("data-pair")?.parse().ok());
+        match pair {
+            Some(pair) => go.run(pair),
+            None => set_in_detail.set(true),
+        }
     });
     on_action(move |action| match action {
         Action::Next | Action::Previous => {
@@ -124,15 +132,14 @@ pub fn DecodePage() -> impl IntoView {
             <Show when=has_frames>
                 <div class="panes">
                     <section class="pane list-pane" aria-label="Frames">
-                        <FrameListHead second="Offset"/>
+                        <div class="frame-row frame-head" aria-hidden="true" inner_html=head("Offset", false)></div>
                         <Windowed
                             label="Frames"
                             count=count
-                            row_height=Signal::derive(move || if narrow.get() { 56.0 } else { 28.0 })
-                            epoch=store.epoch
+                            row_height=Signal::derive(move || if narrow.get() { 56 } else { 28 })
                             cursor=store.cursor
                             draw=draw.clone()
-                            on_enter=Callback::new(move |_| set_in_detail.set(true))
+                            on_open=on_open
                             testid="frame-list"
                         />
                     </section>
@@ -141,7 +148,7 @@ pub fn DecodePage() -> impl IntoView {
                             <Icon glyph=Glyph::Left/>
                             "Frames"
                         </button>
-                        <FrameDetail shown=shown selected=store.selected on_pair=go/>
+                        <FrameDetail shown=shown selected=Selected(store.selected) on_pair=go/>
                     </section>
                 </div>
             </Show>

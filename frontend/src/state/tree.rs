@@ -83,6 +83,42 @@ pub fn reveal(decoded: &Decoded, toggled: &mut BTreeSet<u32>, id: FieldId) {
     }
 }
 
+/// What a key does in the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The field becomes the selected one.
+    To(FieldId),
+    /// The field is opened or closed.
+    Toggle(FieldId),
+    /// The key means nothing here.
+    Nothing,
+}
+
+/// What a key does, with the selected line at `at`.
+#[must_use]
+pub fn step(key: &str, lines: &[Line], at: Option<usize>) -> Step {
+    let to = |line: Option<&Line>| line.map_or(Step::Nothing, |l| Step::To(l.id));
+    let Some((at, line)) = at.and_then(|at| Some((at, lines.get(at)?))) else {
+        return match key {
+            "ArrowDown" | "Home" => to(lines.first()),
+            "ArrowUp" | "End" => to(lines.last()),
+            _ => Step::Nothing,
+        };
+    };
+    match key {
+        "ArrowDown" => to(lines.get(at + 1)),
+        "ArrowUp" => to(at.checked_sub(1).and_then(|at| lines.get(at))),
+        "Home" => to(lines.first()),
+        "End" => to(lines.last()),
+        "ArrowRight" if !line.leaf && !line.open => Step::Toggle(line.id),
+        "ArrowRight" if !line.leaf => to(lines.get(at + 1)),
+        "ArrowLeft" if line.open => Step::Toggle(line.id),
+        "ArrowLeft" => line.parent.map_or(Step::Nothing, Step::To),
+        "Enter" | " " if !line.leaf => Step::Toggle(line.id),
+        _ => Step::Nothing,
+    }
+}
+
 /// All that is known of a field, in words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facts {
@@ -209,6 +245,18 @@ mod tests {
         let mut toggled = BTreeSet::new();
         reveal(decoded, &mut toggled, bit.id);
         assert!(lines(decoded, &toggled).iter().any(|l| l.id == bit.id));
+    }
+
+    #[test]
+    fn keys_walk_open_and_close() {
+        let shown = status();
+        let lines = lines(&shown.decoded, &BTreeSet::new());
+        let at = lines.iter().position(|l| !l.leaf && !l.open).unwrap();
+        assert_eq!(step("ArrowDown", &lines, None), Step::To(lines[0].id));
+        assert_eq!(step("ArrowRight", &lines, Some(at)), Step::Toggle(lines[at].id));
+        assert_eq!(step("ArrowUp", &lines, Some(at)), Step::To(lines[at - 1].id));
+        assert_eq!(step("x", &lines, Some(at)), Step::Nothing);
+        assert_eq!(step("End", &lines, Some(at)), Step::To(lines[lines.len() - 1].id));
     }
 
     #[test]
