@@ -112,6 +112,9 @@ impl Glue {
             .input_path(program)
             .out_name("valvescope")
             .typescript(false)
+            // Names of functions are a third of the file; a panic still tells its place.
+            .remove_name_section(true)
+            .remove_producers_section(true)
             .omit_default_module_path(false);
         match mode {
             Mode::Modules => bindgen.web(true),
