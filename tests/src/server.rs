@@ -15,17 +15,25 @@ pub struct Server {
 }
 
 impl Server {
-    /// Starts the server with these options besides `--listen`.
+    /// Starts the server on a free port with these options besides `--listen`.
     ///
     /// # Panics
     ///
     /// If the binary is missing or does not say `listening on http://…`.
     #[must_use]
     pub fn start(options: &[&str]) -> Self {
+        Self::start_at("127.0.0.1:0", options)
+    }
+
+    /// Starts the server where another one may have been before.
+    ///
+    /// # Panics
+    ///
+    /// If the binary is missing or does not say `listening on http://…`.
+    #[must_use]
+    pub fn start_at(listen: &str, options: &[&str]) -> Self {
         let mut command = Command::new(binary());
-        command
-            .args(["serve", "--listen", "127.0.0.1:0"])
-            .args(options);
+        command.args(["serve", "--listen", listen]).args(options);
         let advice = "run the tests with `cargo xtask test`, or build first: \
             `cargo xtask web && cargo build -p backend`";
         let (process, address) = Process::start(&mut command, advice, |line| {
