@@ -30,7 +30,7 @@ impl Payload {
         let body = body.strip_suffix(b"\r").unwrap_or(body);
         let mut bytes = [0; MAX_PAYLOAD];
         let mut len = 0_usize;
-        let mut sound = body.len() % 2 == 0;
+        let mut sound = body.len().is_multiple_of(2);
         for pair in body.chunks_exact(2) {
             let (Some(byte), Some(slot)) = (hex_pair(pair), bytes.get_mut(len)) else {
                 sound = false;

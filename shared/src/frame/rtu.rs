@@ -291,7 +291,7 @@ fn damaged(
         .map_or(Role::Unknown, |c| c.role);
     let needs_more = matches!(length::request(view.bytes.get(1..gap)?), Length::Needs(_))
         || matches!(length::response(view.bytes.get(1..gap)?), Length::Needs(_));
-    if (end || next_unit.is_some()) && (gap >= 4 || end) && gap < MAX {
+    if (end || (next_unit.is_some() && gap >= 4)) && gap < MAX {
         if let Some(c) = fits(&|len| len > gap) {
             return found(gap, c.role, Marks::TRUNCATED);
         }

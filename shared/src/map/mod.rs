@@ -8,6 +8,7 @@
 
 pub mod decode;
 pub mod export;
+mod fields;
 pub mod plan;
 pub mod row;
 pub mod search;
@@ -19,6 +20,8 @@ use crate::scale::Scale;
 use row::{
     Access, DeviceMap, Kind, Level, Member, Model, Reading, Row, Set, Settled, Source, Trust,
 };
+
+pub(crate) use fields::words;
 
 include!(concat!(env!("OUT_DIR"), "/maps.rs"));
 

@@ -72,7 +72,7 @@ impl<'a> Pdu<'a, '_> {
                 data.here(),
             );
         }
-        map::decode::words(self.out, self.map(), table, start, data);
+        map::words(self.out, self.map(), table, start, data);
         Some(())
     }
 
@@ -91,7 +91,7 @@ impl<'a> Pdu<'a, '_> {
                 self.find(Finding::EchoDiffers { got, want: sent }, place);
             }
         }
-        map::decode::words(self.out, self.map(), Table::Holding, address, data);
+        map::words(self.out, self.map(), Table::Holding, address, data);
         Some(())
     }
 
@@ -117,7 +117,7 @@ impl<'a> Pdu<'a, '_> {
             );
         }
         let data = self.data(usize::from(bytes));
-        map::decode::words(self.out, self.map(), Table::Holding, start, data);
+        map::words(self.out, self.map(), Table::Holding, start, data);
         Some(())
     }
 
@@ -152,7 +152,7 @@ impl<'a> Pdu<'a, '_> {
             );
         }
         let data = self.data(usize::from(bytes));
-        map::decode::words(self.out, self.map(), Table::Holding, write, data);
+        map::words(self.out, self.map(), Table::Holding, write, data);
         Some(())
     }
 

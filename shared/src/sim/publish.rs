@@ -280,6 +280,11 @@ impl Icon3000 {
         };
         store.set(at::TORQUE_POTENTIOMETER, word(potentiometer.min(4095)));
         store.set(at::MODBUS_STATUS, 1);
+        self.publish_counters();
+    }
+
+    /// The counters of the bus.
+    pub(super) fn publish_counters(&mut self) {
         let c = &self.counters;
         // Their order in the registers differs from that of the sub-functions (reading E60).
         let counters = [
@@ -290,7 +295,7 @@ impl Icon3000 {
             c.busy,
             c.overruns,
         ];
-        store.fill(at::COUNTERS, counters);
+        self.store.fill(at::COUNTERS, counters);
     }
 
     /// A discrete input (table 1; reading E41 for the last three).

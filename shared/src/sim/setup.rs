@@ -165,7 +165,7 @@ pub(super) fn curve(store: &mut Store, stroke: &Stroke, stamp: Stamp, last: bool
             at::CLOSING_TIME,
         ),
     };
-    let seconds = u16::try_from(stroke.millis.div_ceil(1000)).unwrap_or(u16::MAX);
+    let seconds = u16::try_from(stroke.millis.saturating_add(500) / 1000).unwrap_or(u16::MAX);
     if last {
         store.set(time, seconds);
     }
