@@ -3,16 +3,31 @@
 use leptos::prelude::*;
 
 use crate::browser::provide_narrow;
+use crate::components::conn::ConnState;
 use crate::components::help::HelpOverlay;
 use crate::components::rail::Rail;
 use crate::decode_store::DecodeStore;
 use crate::keys::{KeyBus, on_action};
+use crate::live::Live;
 use crate::pages::decode::DecodePage;
+use crate::pages::device::DeviceRoute;
+use crate::pages::devices::DevicesPage;
 use crate::pages::settings::SettingsPage;
+use crate::pages::traffic::TrafficPage;
 use crate::router::Router;
 use crate::state::route::{Route, Screen};
 use crate::state::shortcuts::Action;
 use crate::theme::provide_theme;
+
+/// What is drawn anew when it changes; a tab or a setting is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Page {
+    Decode,
+    Devices,
+    Device,
+    Traffic,
+    Settings,
+}
 
 /// The whole page.
 #[component]
@@ -32,7 +47,14 @@ pub fn App() -> impl IntoView {
         };
         router.go(&Route::to(screen));
     });
-    let screen = router.screen();
+    Live::provide();
+    let page = Memo::new(move |_| match router.route().screen {
+        Screen::Decode => Page::Decode,
+        Screen::Devices => Page::Devices,
+        Screen::Device(..) => Page::Device,
+        Screen::Traffic(_) => Page::Traffic,
+        Screen::Settings => Page::Settings,
+    });
     view! {
         <a class="skip" href="#main" on:click=move |event| {
             event.prevent_default();
@@ -40,11 +62,16 @@ pub fn App() -> impl IntoView {
         }>
             "To the content"
         </a>
-        <Rail>"offline"</Rail>
+        <Rail>
+            <ConnState/>
+        </Rail>
         <main id="main" tabindex="-1">
-            {move || match screen.get() {
-                Screen::Settings => view! { <SettingsPage/> }.into_any(),
-                _ => view! { <DecodePage/> }.into_any(),
+            {move || match page.get() {
+                Page::Decode => view! { <DecodePage/> }.into_any(),
+                Page::Devices => view! { <DevicesPage/> }.into_any(),
+                Page::Device => view! { <DeviceRoute/> }.into_any(),
+                Page::Traffic => view! { <TrafficPage/> }.into_any(),
+                Page::Settings => view! { <SettingsPage/> }.into_any(),
             }}
         </main>
         <HelpOverlay/>

@@ -63,7 +63,7 @@ impl Page {
     /// # Panics
     ///
     /// If none comes in time, or if it is not of the protocol.
-    pub fn next(&mut self) -> ToPage {
+    pub fn receive(&mut self) -> ToPage {
         loop {
             let text = match self.socket.read().expect("a message in time") {
                 Message::Text(text) => text,
@@ -124,7 +124,7 @@ impl Page {
                 id: ID,
                 outcome,
                 text,
-            } = self.next()
+            } = self.receive()
             {
                 done = Some((outcome, text));
             }

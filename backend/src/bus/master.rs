@@ -1,6 +1,7 @@
 //! The master of a serial line: one request at a time, silence before each, and no answer taken
 //! that could belong to another request.
 
+use super::alarm::Alarm;
 use super::answer::{Asked, find};
 use super::tap::Tap;
 use super::timing::Timing;
@@ -11,7 +12,7 @@ use std::fmt::Debug;
 use std::io;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
-use tokio::time::{Instant, timeout, timeout_at};
+use tokio::time::{Instant, timeout};
 
 /// Any stream of bytes with a device at the other end.
 pub trait Stream: AsyncRead + AsyncWrite + Send + Unpin + Debug {}
@@ -26,6 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub struct Master {
     tap: Tap<Box<dyn Stream>>,
+    alarm: Alarm,
     framing: Framing,
     timing: Timing,
     /// When the last byte passed, in either direction.
@@ -51,9 +53,10 @@ pub struct Request<'a> {
 impl Master {
     /// A master of a line that was just opened.
     #[must_use]
-    pub fn new(tap: Tap<Box<dyn Stream>>, framing: Framing, timing: Timing) -> Self {
+    pub fn new(tap: Tap<Box<dyn Stream>>, framing: Framing, timing: Timing, alarm: Alarm) -> Self {
         Self {
             tap,
+            alarm,
             framing,
             timing,
             last: Instant::now(),
@@ -73,19 +76,15 @@ impl Master {
     pub async fn listen(&mut self) -> io::Error {
         loop {
             let quiet_at = self.last + self.timing.gap;
-            let waiting = Instant::now() < quiet_at;
             let mut bytes = [0; 256];
-            let read = self.tap.read(&mut bytes);
-            let read = if waiting {
-                match timeout_at(quiet_at, read).await {
-                    Ok(read) => read,
-                    Err(_) => {
-                        self.tap.recorder().silence();
-                        continue;
-                    }
-                }
+            let read = if Instant::now() < quiet_at {
+                let Some(read) = self.read_until(quiet_at, &mut bytes).await else {
+                    self.tap.recorder().silence();
+                    continue;
+                };
+                read
             } else {
-                read.await
+                self.tap.read(&mut bytes).await
             };
             match read {
                 Ok(0) => return gone(),
@@ -134,11 +133,11 @@ impl Master {
             let quiet_at = self.last + self.timing.turnaround;
             let mut bytes = [0; 256];
             // Bytes that are there already are read even if the silence is over.
-            match timeout_at(quiet_at, self.tap.read(&mut bytes)).await {
-                Err(_) => break,
-                Ok(Ok(0)) => return Err(gone().into()),
-                Ok(Ok(_)) => self.strayed(),
-                Ok(Err(error)) => return Err(error.into()),
+            match self.read_until(quiet_at, &mut bytes).await {
+                None => break,
+                Some(Ok(0)) => return Err(gone().into()),
+                Some(Ok(_)) => self.strayed(),
+                Some(Err(error)) => return Err(error.into()),
             }
             if Instant::now() > limit {
                 return Err(Fault::Damaged("the line is never silent".into()));
@@ -146,6 +145,16 @@ impl Master {
         }
         self.tap.recorder().silence();
         Ok(())
+    }
+
+    /// Reads what comes until a moment; `None` if nothing came. What is there already is read even
+    /// if the moment has passed. Safe to cancel.
+    async fn read_until(&mut self, at: Instant, bytes: &mut [u8]) -> Option<io::Result<usize>> {
+        tokio::select! {
+            biased;
+            read = self.tap.read(bytes) => Some(read),
+            () = self.alarm.until(at) => None,
+        }
     }
 
     fn strayed(&mut self) {
@@ -178,9 +187,9 @@ impl Master {
                 None => late,
             };
             let mut bytes = [0; 512];
-            match timeout_at(until, self.tap.read(&mut bytes)).await {
-                Ok(Ok(0)) => return Err(gone().into()),
-                Ok(Ok(count)) => {
+            match self.read_until(until, &mut bytes).await {
+                Some(Ok(0)) => return Err(gone().into()),
+                Some(Ok(count)) => {
                     self.last = Instant::now();
                     self.heard
                         .extend_from_slice(bytes.get(..count).unwrap_or(&[]));
@@ -190,8 +199,8 @@ impl Master {
                     }
                     continue;
                 }
-                Ok(Err(error)) => return Err(error.into()),
-                Err(_) => {}
+                Some(Err(error)) => return Err(error.into()),
+                None => {}
             }
             if found.strays > 0 {
                 self.stray = Some(self.last);

@@ -1,6 +1,7 @@
 //! Buses: one actor for each line, which alone opens, writes and reads it.
 
 mod actor;
+mod alarm;
 mod answer;
 pub mod board;
 pub mod gate;

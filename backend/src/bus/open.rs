@@ -1,5 +1,6 @@
 //! Opening a line.
 
+use super::alarm::Alarm;
 use super::master::{Master, Request, Stream};
 use super::recorder::Recorder;
 use super::tap::Tap;
@@ -37,6 +38,7 @@ impl Line {
     pub async fn open(bus: &BusConfig, recorder: Recorder, plug: &mut Plug) -> io::Result<Self> {
         let framing = bus.line.framing();
         let timing = Timing::of(bus);
+        let mut alarm = Alarm::default();
         let stream: Box<dyn Stream> = match (&bus.line, plug) {
             (_, Plug::Stream(make)) => make()?,
             (LineConfig::Tcp { host }, _) => {
@@ -48,7 +50,10 @@ impl Line {
                     port, baud, mode, ..
                 },
                 _,
-            ) => Box::new(serial::open(port, *baud, *mode)?),
+            ) => {
+                alarm = Alarm::exact();
+                Box::new(serial::open(port, *baud, *mode)?)
+            }
             (LineConfig::RtuOverTcp { host }, _) => Box::new(tcp::connect(host).await?),
             (LineConfig::Simulator, Plug::Simulated(actuators)) => {
                 let (near, far) = tokio::io::duplex(4096);
@@ -63,7 +68,8 @@ impl Line {
             }
         };
         let tap = Tap::new(stream, framing, recorder);
-        Ok(Self::Serial(Box::new(Master::new(tap, framing, timing))))
+        let master = Master::new(tap, framing, timing, alarm);
+        Ok(Self::Serial(Box::new(master)))
     }
 
     /// Reads once.

@@ -2,8 +2,6 @@
 
 mod hosts;
 mod session;
-#[cfg(test)]
-mod tests;
 
 pub use hosts::Hosts;
 

@@ -94,7 +94,8 @@ impl Parts {
     }
 
     fn find(self, attribute: &str, value: u32) -> Option<web_sys::HtmlElement> {
-        let article = self.article.get_untracked()?;
+        // The page may be gone by now.
+        let article = self.article.try_get_untracked()??;
         let found = article.query_selector(&format!("[{attribute}=\"{value}\"]"));
         found.ok()??.dyn_into().ok()
     }

@@ -1,5 +1,6 @@
 //! Each component shows one thing.
 
+pub mod conn;
 pub mod frame_detail;
 pub mod help;
 pub mod icon;
@@ -7,4 +8,6 @@ pub mod input;
 pub mod ne107;
 pub mod problems;
 pub mod rail;
+pub mod traffic;
+pub mod values;
 pub mod windowed;

@@ -1,6 +1,5 @@
-//! The signs of NAMUR NE 107: colour, shape and letter, never colour alone.
-
-use leptos::prelude::*;
+//! The signs of NAMUR NE 107: colour, shape and letter, never colour alone. Drawn by
+//! [`crate::markup::device::sign`].
 
 /// A state with a sign of its own. Good has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -42,7 +41,9 @@ impl Sign {
         }
     }
 
-    const fn class(self) -> &'static str {
+    /// Its class in the style sheet.
+    #[must_use]
+    pub const fn class(self) -> &'static str {
         match self {
             Self::Failure => "sign sign-f",
             Self::FunctionCheck => "sign sign-c",
@@ -52,8 +53,9 @@ impl Sign {
         }
     }
 
-    /// Outline and inner mark.
-    const fn paths(self) -> (&'static str, &'static str) {
+    /// Outline and inner mark, in a square of 20 units.
+    #[must_use]
+    pub const fn paths(self) -> (&'static str, &'static str) {
         match self {
             Self::Failure => (
                 "M10 1.5a8.5 8.5 0 1 0 .01 0z",
@@ -73,26 +75,5 @@ impl Sign {
             ),
             Self::Warning => ("M10 1.5l9 16.5H1z", "M10 8v4.2M10 15v.2"),
         }
-    }
-}
-
-/// A sign with its letter.
-#[component]
-pub fn SignMark(
-    /// Which state.
-    sign: Sign,
-    /// Size in pixels.
-    #[prop(default = 18)]
-    size: u8,
-) -> impl IntoView {
-    let (outline, inner) = sign.paths();
-    view! {
-        <span class=sign.class() role="img" aria-label=sign.label()>
-            <svg width=size height=size viewBox="0 0 20 20" aria-hidden="true">
-                <path class="sign-shape" d=outline></path>
-                <path class="sign-inner" d=inner></path>
-            </svg>
-            <b aria-hidden="true">{sign.letter()}</b>
-        </span>
     }
 }

@@ -70,7 +70,8 @@ pub fn Windowed(
         }
     };
     let scroll_to = move |top: f64| {
-        if let Some(list) = list.get_untracked() {
+        // The list may be gone by now.
+        if let Some(Some(list)) = list.try_get_untracked() {
             list.set_scroll_top(whole(top));
         }
     };
@@ -161,7 +162,12 @@ pub fn Windowed(
                 class="windowed-space"
                 style:height=move || format!("{}px", whole(window().spacer()))
             >
-                <div class="windowed-rows" role="presentation" node_ref=rows></div>
+                <div
+                    class="windowed-rows"
+                    role="presentation"
+                    style:--row=move || format!("{}px", row_height.get())
+                    node_ref=rows
+                ></div>
             </div>
         </div>
     }
@@ -218,12 +224,41 @@ fn fill(
             set(&slot.element, "aria-selected", selected);
         }
         if slot.html != html {
-            slot.element.set_inner_html(&html);
+            if slot.at != at || !patch(&slot.element, &html) {
+                slot.element.set_inner_html(&html);
+            }
             slot.html = html;
         }
         slot.at = at;
         slot.chosen = is_chosen;
     }
+}
+
+/// Replaces only the cells that changed, so that a button under the finger stays where it is.
+/// False if the row is another one altogether.
+fn patch(slot: &web_sys::Element, html: &str) -> bool {
+    let Ok(fresh) = document().create_element("div") else {
+        return false;
+    };
+    fresh.set_inner_html(html);
+    let (Some(old), Some(new)) = (slot.first_element_child(), fresh.first_element_child()) else {
+        return false;
+    };
+    let (cells, next) = (old.children(), new.children());
+    if old.class_name() != new.class_name() || cells.length() != next.length() {
+        return false;
+    }
+    // Backwards, because a cell leaves the new row when it is put into the old one.
+    for at in (0..cells.length()).rev() {
+        let (Some(cell), Some(fresh)) = (cells.item(at), next.item(at)) else {
+            return false;
+        };
+        if cell.outer_html() != fresh.outer_html() && cell.replace_with_with_node_1(&fresh).is_err()
+        {
+            return false;
+        }
+    }
+    true
 }
 
 fn new_row(rows: &web_sys::Element) -> Option<web_sys::Element> {

@@ -125,11 +125,13 @@ impl Live {
     }
 
     fn retry(self) {
-        self.plant.update(Plant::lost);
-        let since = match self.conn.get_untracked() {
-            Conn::Reconnecting(since) => since,
-            _ => wall_now(),
+        let since = match self.conn.try_get_untracked() {
+            // The page is gone.
+            None => return,
+            Some(Conn::Reconnecting(since)) => since,
+            Some(_) => wall_now(),
         };
+        self.plant.update(Plant::lost);
         self.conn.set(Conn::Reconnecting(since));
         let attempt = self
             .inner
@@ -151,6 +153,9 @@ impl Live {
     }
 
     fn hear(self, event: Event) {
+        if self.plant.try_with_untracked(|_| ()).is_none() {
+            return;
+        }
         let _gone = self.inner.try_update_value(|inner| inner.heard = now_ms());
         match event {
             Event::Open => self.send(&[Plant::hello()]),
@@ -184,15 +189,20 @@ impl Live {
         if !dirty.replace(true) {
             request_animation_frame(move || {
                 dirty.set(false);
-                self.plant.notify();
+                // The page may be gone by now.
+                if self.plant.try_with_untracked(|_| ()).is_some() {
+                    self.plant.notify();
+                }
             });
         }
     }
 
     fn tick(self) {
         let now = now_ms();
-        self.now
-            .set(self.plant.with_untracked(|plant| plant.now(now)));
+        let Some(backend) = self.plant.try_with_untracked(|plant| plant.now(now)) else {
+            return;
+        };
+        self.now.set(backend);
         let dead = self
             .inner
             .try_with_value(|i| i.socket.is_some() && now - i.heard > SILENCE_MS);

@@ -4,10 +4,12 @@
 //! drawing time; these functions are pure, tested natively, and draw a screen of rows at once. All
 //! text is escaped; there are no `style` attributes, which the server's policy forbids.
 
+pub mod device;
 pub mod facts;
 pub mod frame;
 pub mod hex;
 pub mod tree;
+pub mod values;
 
 use crate::components::icon::Glyph;
 use shared::problem::Severity;

@@ -1,4 +1,7 @@
 //! The screens, put together from components.
 
 pub mod decode;
+pub mod device;
+pub mod devices;
 pub mod settings;
+pub mod traffic;

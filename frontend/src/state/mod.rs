@@ -12,6 +12,7 @@ pub mod samples;
 pub mod selection;
 pub mod shortcuts;
 pub mod summary;
+pub mod traffic;
 pub mod tree;
 pub mod values;
 pub mod window;

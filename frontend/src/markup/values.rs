@@ -1,0 +1,323 @@
+//! Rows of the register browser, and all that is known about one.
+
+use shared::map::row::{Kind, Row, Trust};
+use shared::value::Quality;
+
+use super::Markup;
+use super::facts::{fact, reading, trust};
+use crate::components::icon::Glyph;
+use crate::format::age;
+use crate::state::health::{Freshness, freshness};
+use crate::state::tree::{Facts, binary};
+use crate::state::values::{Cell, Item, RawForm, access, addresses, has_bits};
+
+/// What a row needs besides its value.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// Microseconds now, on the clock of the values.
+    pub now: u64,
+    /// How often the row is read again, `None` if it was read once.
+    pub period: Option<u64>,
+    /// False while connection or device are away.
+    pub reachable: bool,
+    /// How raw words are written.
+    pub raw: RawForm,
+    /// True if the bits of the row are shown below it.
+    pub open: bool,
+}
+
+/// How long a change stays marked, in microseconds.
+const FADE: u64 = 600_000;
+
+/// One line of the register browser.
+pub fn row(html: &mut Markup, item: Item, cell: Option<&Cell>, around: &Around) {
+    let row = item.row();
+    let (address, number) = addresses(row);
+    let is_bit = matches!(item, Item::Bit(..));
+    html.open(
+        "div",
+        &[
+            ("class", if is_bit { "value-row bit" } else { "value-row" }),
+            ("data-testid", "register-row"),
+            ("data-address", &address),
+            ("data-table", row.table.key()),
+            ("data-key", row.key),
+        ],
+    );
+    html.open("span", &[("class", "value-chevron")]);
+    if !is_bit && has_bits(row) {
+        let words = if around.open { "Hide bits" } else { "Show bits" };
+        let class = if around.open { "open" } else { "" };
+        html.open(
+            "button",
+            &[
+                ("class", class),
+                ("tabindex", "-1"),
+                ("aria-label", words),
+                ("data-toggle", ""),
+            ],
+        );
+        html.icon(Glyph::Chevron).close("button");
+    }
+    html.close("span");
+    match item {
+        Item::Row(_) => {
+            html.node("span", "num mono", &address)
+                .node("span", "num mono quiet", &number)
+                .node("span", "value-label", row.label);
+        }
+        Item::Bit(_, member) => {
+            html.node("span", "num mono quiet", &format!("bit {}", member.value))
+                .node("span", "", "")
+                .node("span", "value-label", member.label);
+        }
+    }
+    value(html, cell, around);
+    html.node("span", "unit", cell.map_or("", |c| c.unit));
+    quality(html, row, cell, around);
+    let raw = cell.filter(|_| !is_bit).map_or_else(String::new, |c| {
+        around.raw.write(&c.words, row.table.is_bits())
+    });
+    html.node("code", "value-raw", &raw).close("div");
+}
+
+fn value(html: &mut Markup, cell: Option<&Cell>, around: &Around) {
+    let Some(cell) = cell else {
+        html.open(
+            "span",
+            &[("class", "value quiet"), ("data-testid", "register-value")],
+        );
+        html.text("–").close("span");
+        return;
+    };
+    let mut class = String::from("value");
+    for (is, name) in [
+        (cell.numeric, " numeric"),
+        (cell.faint, " faint"),
+        (is_stale(cell, around), " stale"),
+    ] {
+        if is {
+            class.push_str(name);
+        }
+    }
+    // The fade began when the value came; a row drawn anew goes on with it.
+    let passed = cell.changed.map(|at| around.now.saturating_sub(at));
+    if let Some(passed) = passed.filter(|p| *p < FADE) {
+        class.push_str(" changed fade-");
+        class.push_str(&(passed / 100_000).to_string());
+    }
+    html.open(
+        "span",
+        &[
+            ("class", &class),
+            ("title", &cell.text),
+            ("data-testid", "register-value"),
+        ],
+    );
+    html.text(&cell.text).close("span");
+}
+
+fn is_stale(cell: &Cell, around: &Around) -> bool {
+    let old = around.now.saturating_sub(cell.at);
+    freshness(old, around.period, around.reachable) == Freshness::Stale
+}
+
+fn quality(html: &mut Markup, row: &Row, cell: Option<&Cell>, around: &Around) {
+    html.open(
+        "span",
+        &[("class", "value-age"), ("data-testid", "register-age")],
+    );
+    match cell {
+        None if row.kind == Kind::Reserved => {
+            html.text("reserved");
+        }
+        None => {
+            html.text("not read");
+        }
+        Some(cell) => {
+            if cell.quality != Quality::Good {
+                html.node("em", "quality", cell.quality.label()).text(" ");
+            } else if row.trust != Trust::Manual {
+                html.node("em", "trust", row.trust.key()).text(" ");
+            }
+            if is_stale(cell, around) {
+                html.node("em", "quality stale-mark", "stale").text(" ");
+            }
+            html.text(&age(around.now.saturating_sub(cell.at)));
+        }
+    }
+    html.close("span");
+}
+
+/// Everything about a line of the register browser.
+#[must_use]
+pub fn detail(item: Item, cell: Option<&Cell>, parts: &[Facts]) -> String {
+    let row = item.row();
+    let (address, number) = addresses(row);
+    let mut html = Markup::new();
+    html.node("h3", "", row.label);
+    html.open("p", &[("class", "detail-value")]);
+    html.node("b", "", cell.map_or("not read yet", |c| &c.text));
+    html.text(" ").text(cell.map_or("", |c| c.unit));
+    html.close("p").open("dl", &[]);
+    if let Item::Bit(_, member) = item {
+        fact(
+            &mut html,
+            "Bit",
+            &format!("{} · {} · {}", member.value, member.label, member.key),
+        );
+    }
+    fact(&mut html, "Table", row.table.label());
+    fact(&mut html, "Address", &format!("{address} · number {number}"));
+    if let Some(cell) = cell {
+        raw_words(&mut html, row, cell);
+        fact(&mut html, "Quality", cell.quality.label());
+    }
+    let words = match row.words {
+        1 => String::new(),
+        n => format!(", {n} words"),
+    };
+    fact(&mut html, "Type", &format!("{}{words}", row.kind.key()));
+    if !row.scale.is_one() || !row.unit.is_empty() {
+        fact(&mut html, "Scale", &format!("{} {}", row.scale, row.unit));
+    }
+    if let Some((min, max)) = row.range {
+        fact(&mut html, "Raw range", &format!("{min} to {max}"));
+    }
+    fact(&mut html, "Access", access(row.access));
+    if let Some(level) = row.level {
+        fact(&mut html, "User level", level.key());
+    }
+    fact(&mut html, "Group", row.group);
+    fact(&mut html, "Since", row.since.key());
+    fact(&mut html, "Key", row.key);
+    fact(
+        &mut html,
+        "Source",
+        &format!("{}, {}", row.source, trust(row.trust)),
+    );
+    if !row.note.is_empty() {
+        fact(&mut html, "Note", row.note);
+    }
+    if let Some(read) = row.reading {
+        reading(&mut html, read);
+    }
+    html.close("dl");
+    members(&mut html, row, cell);
+    decoded_parts(&mut html, parts);
+    html.finish()
+}
+
+fn raw_words(html: &mut Markup, row: &Row, cell: &Cell) {
+    let hex: Vec<_> = cell.words.iter().map(|w| format!("{w:04X}")).collect();
+    html.node("dt", "", "Raw");
+    html.node("dd", "mono wrap", &hex.join(" "));
+    if let ([word], false) = (&cell.words[..], row.table.is_bits()) {
+        let word = u32::from(*word);
+        fact(html, "", &format!("{word} · {}", binary(word, 2)));
+    }
+}
+
+/// The names of codes or bits; the present ones are marked.
+fn members(html: &mut Markup, row: &Row, cell: Option<&Cell>) {
+    let Some(set) = row.set else { return };
+    let raw = cell.map(|c| {
+        c.words
+            .iter()
+            .take(2)
+            .fold(0_u32, |n, w| (n << 16) | u32::from(*w))
+    });
+    html.node("h4", "", if set.bits { "Bits" } else { "Codes" });
+    html.open("table", &[("class", "members")])
+        .open("tbody", &[]);
+    for member in set.members {
+        let code = u32::from(member.value);
+        let is_now = raw.is_some_and(|raw| {
+            if set.bits {
+                raw.wrapping_shr(code) & 1 == 1
+            } else {
+                raw == code
+            }
+        });
+        html.open("tr", &[("class", if is_now { "now" } else { "" })]);
+        html.node("td", "num mono", &member.value.to_string());
+        html.node("td", "", member.label);
+        let mark = if is_now { "now" } else { "" };
+        html.node("td", "quiet", mark).close("tr");
+    }
+    html.close("tbody").close("table");
+}
+
+/// The parts of a value that has parts, such as a torque curve.
+fn decoded_parts(html: &mut Markup, parts: &[Facts]) {
+    if parts.is_empty() {
+        return;
+    }
+    html.node("h4", "", "Parts").open("dl", &[]);
+    for part in parts {
+        fact(html, &part.label, &format!("{} {}", part.value, part.unit));
+    }
+    html.close("dl");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::address::Table;
+    use shared::map::row::Model;
+
+    fn cell() -> Cell {
+        Cell {
+            text: "45.2".into(),
+            unit: "%",
+            numeric: true,
+            faint: false,
+            quality: Quality::Good,
+            at: 1_000_000,
+            changed: Some(1_000_000),
+            words: vec![452],
+        }
+    }
+
+    fn position() -> Item {
+        let map = Model::Icon3000v2.map();
+        Item::Row(map.by_key(Table::Holding, "actuator_position").unwrap())
+    }
+
+    fn around(now: u64, reachable: bool) -> Around {
+        Around {
+            now,
+            period: Some(1_000_000),
+            reachable,
+            raw: RawForm::Hex,
+            open: false,
+        }
+    }
+
+    fn html(cell: Option<&Cell>, around: &Around) -> String {
+        let mut html = Markup::new();
+        row(&mut html, position(), cell, around);
+        html.finish()
+    }
+
+    #[test]
+    fn a_row_shows_both_addresses_and_its_age() {
+        let fresh = html(Some(&cell()), &around(1_250_000, true));
+        for part in ["3004", "403005", "45.2", "0.2 s", "01C4", "changed fade-2"] {
+            assert!(fresh.contains(part), "{part}: {fresh}");
+        }
+        assert!(!fresh.contains("stale"));
+        let later = html(Some(&cell()), &around(9_000_000, true));
+        assert!(later.contains("stale") && !later.contains("changed"));
+        assert!(html(Some(&cell()), &around(1_250_000, false)).contains("stale"));
+        assert!(html(None, &around(0, true)).contains("not read"));
+    }
+
+    #[test]
+    fn the_detail_has_all_facts() {
+        let html = detail(position(), Some(&cell()), &[]);
+        for part in ["Holding register", "403005", "u16", "0 to 1000", "VCIOM-16345-EN"] {
+            assert!(html.contains(part), "{part}: {html}");
+        }
+    }
+}
