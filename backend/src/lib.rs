@@ -19,6 +19,7 @@ pub mod cli;
 pub mod clock;
 pub mod config;
 pub mod http;
+pub mod listen;
 pub mod plant;
 pub mod serial;
 pub mod sim;

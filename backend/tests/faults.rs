@@ -10,11 +10,15 @@ use backend::bus::{Handle, Plug, start};
 use backend::clock::Clock;
 use backend::config::{BusConfig, DeviceConfig, LineConfig, Mode, Parity};
 use shared::address::{Address, Table};
+use shared::capture::{Capture, Direction};
+use shared::decode::pdu_of;
 use shared::device::Device;
 use shared::encode::{Read, frame};
-use shared::frame::Framing;
 use shared::frame::check::crc_holds;
-use shared::proto::Outcome;
+use shared::frame::{Framing, Role};
+use shared::proto::{Outcome, ToPage, Way};
+use shared::session::Session;
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream, duplex, split};
@@ -58,8 +62,8 @@ impl Dice {
 /// What the device did.
 #[derive(Default)]
 struct Log {
-    /// The answer to the last read.
-    truth: Vec<u8>,
+    /// The answer to each read.
+    truth: Vec<Vec<u8>>,
     faults: u64,
 }
 
@@ -148,11 +152,78 @@ impl Line {
                 let words = (0..u16::from(*count)).map(|n| number.wrapping_mul(31).wrapping_add(n));
                 let mut answer = vec![*function, count * 2];
                 answer.extend(words.flat_map(u16::to_be_bytes));
-                self.log.lock().unwrap().truth.clone_from(&answer);
+                self.log.lock().unwrap().truth.push(answer.clone());
                 Some(answer)
             }
             _ => None,
         }
+    }
+}
+
+/// A page: sees what the tap recorded, and pairs it itself.
+struct Watcher {
+    session: Session,
+    /// The last capture seen, and the next entry to look at.
+    last: u64,
+    next: u32,
+    /// Which read each request in the session is.
+    reads: HashMap<u32, usize>,
+    count: usize,
+    wrong: u64,
+    answers: u64,
+}
+
+impl Watcher {
+    fn new(framing: Framing) -> Self {
+        Self {
+            session: Session::new(framing),
+            last: 0,
+            next: 0,
+            reads: HashMap::new(),
+            count: 0,
+            wrong: 0,
+            answers: 0,
+        }
+    }
+
+    fn look(&mut self, handle: &Handle, truth: &[Vec<u8>]) {
+        let pulled = handle.recorder().after(self.last, usize::MAX);
+        assert_eq!(pulled.missed, 0);
+        self.last = pulled.last;
+        for text in pulled.messages {
+            let ToPage::Capture { way, ends, hex, .. } = serde_json::from_str(&text).unwrap()
+            else {
+                panic!("{text:?}");
+            };
+            let (bytes, _) = shared::text::read_hex(hex.as_bytes());
+            self.session.push(&Capture {
+                bytes: &bytes,
+                at: None,
+                direction: match way {
+                    Way::Tx => Direction::ToDevice,
+                    Way::Rx => Direction::FromDevice,
+                },
+                ends,
+            });
+        }
+        while self.next < self.session.len() {
+            let frame = *self.session.frame(self.next).unwrap();
+            let sent = self.session.direction(self.next) == Direction::ToDevice;
+            if sent && frame.function == 3 {
+                self.reads.insert(self.next, self.count);
+                self.count += 1;
+            }
+            if let (Role::Response, Some(request)) = (frame.role, frame.pair())
+                && let Some(read) = self.reads.remove(&request)
+            {
+                let bytes = self.session.bytes(self.next).unwrap();
+                let pdu = pdu_of(bytes, self.session.framing()).unwrap();
+                self.answers += 1;
+                self.wrong += u64::from(pdu != truth[read]);
+            }
+            self.next += 1;
+        }
+        self.session.forget_before(self.next.saturating_sub(64));
     }
 }
 
@@ -161,7 +232,7 @@ fn request(framing: Framing, bytes: &[u8]) -> Option<(Vec<u8>, usize)> {
     match framing {
         Framing::Ascii => {
             let end = bytes.iter().position(|b| *b == b'\n')? + 1;
-            Some((shared::decode::pdu_of(&bytes[..end], framing)?, end))
+            Some((pdu_of(&bytes[..end], framing)?, end))
         }
         _ => {
             let frame = bytes.get(..8).filter(|f| crc_holds(f))?;
@@ -223,6 +294,7 @@ async fn check(framing: Framing, device: Device, fault: Fault, per_mille: u64) {
     tokio::spawn(line.serve(far));
     let handle = handle(framing, device, near);
     let (mut wrong, mut lost) = (0, 0);
+    let mut watcher = Watcher::new(framing);
     let began = Instant::now();
     for turn in 0..requests {
         // Mostly the same block, as a watch does.
@@ -230,18 +302,24 @@ async fn check(framing: Framing, device: Device, fault: Fault, per_mille: u64) {
         let read = Read::new(Table::Holding, Address::new(3000), count).unwrap();
         let report = handle.read(0, read).await;
         if report.outcome == Outcome::Ok {
-            wrong += u64::from(report.pdu.as_ref() != Some(&log.lock().unwrap().truth));
+            wrong += u64::from(report.pdu.as_ref() != log.lock().unwrap().truth.last());
         } else {
             lost += 1;
         }
+        watcher.look(&handle, &log.lock().unwrap().truth);
     }
     let took = began.elapsed();
     let faults = log.lock().unwrap().faults;
     println!(
         "{framing:?} {device:?} {fault:?} {per_mille}: {requests} requests, {faults} faults, \
-         {lost} lost, {wrong} wrong, {took:?} of line time"
+         {lost} lost, {wrong} wrong, {} wrong of {} for a page, {took:?} of line time",
+        watcher.wrong, watcher.answers
     );
     assert_eq!(wrong, 0, "{fault:?} at {per_mille} of 1000");
+    assert_eq!(
+        watcher.wrong, 0,
+        "{fault:?} at {per_mille} of 1000, as a page sees it"
+    );
     assert!(faults > requests * per_mille / 2000, "{faults} faults");
     assert!(lost * 10 <= faults * 11, "{lost} lost of {faults} faults");
 }

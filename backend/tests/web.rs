@@ -237,8 +237,8 @@ async fn strangers_are_refused_before_the_upgrade() {
 async fn who_does_not_say_hello_is_sent_away() {
     let address = serve(&Config::simulated()).await;
     for (text, word) in [
-        (r#"{"type":"hello","version":999}"#, "999"),
-        (r#"{"type":"read"}"#, "hello"),
+        (r#"{"hello":{"version":999}}"#, "999"),
+        (r#"{"read":{}}"#, "hello"),
         ("[]", "hello"),
     ] {
         let mut page = Page::open(address, &[]).await.unwrap();
@@ -258,11 +258,11 @@ async fn nonsense_is_answered_with_reasons() {
     let address = serve(&Config::simulated()).await;
     let (mut page, _) = Page::greet(address).await;
     for text in [
-        r#"{"type":"write","device":"XV-101","address":0,"value":2}"#,
-        r#"{"type":"send","hex":"010600000002"}"#,
-        r#"{"type":"subscribe","bus":"?","after":null}"#,
-        r#"{"type":"watch","device":"?","blocks":[],"period_ms":1}"#,
-        r#"{"type":"watch","device":"XV-101","blocks":[{"table":"coil","start":0,"count":0}],"period_ms":1}"#,
+        r#"{"write":{"device":"XV-101","address":0,"value":2}}"#,
+        r#"{"send":{"hex":"010600000002"}}"#,
+        r#"{"subscribe":{"bus":"?","after":null}}"#,
+        r#"{"watch":{"device":"?","blocks":[],"period_ms":1}}"#,
+        r#"{"watch":{"device":"XV-101","blocks":[{"table":"coil","start":0,"count":0}],"period_ms":1}}"#,
         "",
         "{",
     ] {

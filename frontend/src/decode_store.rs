@@ -331,10 +331,7 @@ impl DecodeStore {
     }
 }
 
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "a part of 1 for a progress bar"
-)]
+#[expect(clippy::cast_precision_loss, reason = "a part of 1 for a progress bar")]
 fn part(done: usize, all: usize) -> f64 {
     done as f64 / all.max(1) as f64
 }

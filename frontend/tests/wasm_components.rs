@@ -162,7 +162,8 @@ async fn keys_move_in_list_tree_and_bytes() {
 #[wasm_bindgen_test]
 async fn problems_lead_to_their_bytes() {
     let page = Page::at("#/decode").await;
-    page.write("7D0300070003BFF6\n7D0306003D084400003E08\n0G").await;
+    page.write("7D0300070003BFF6\n7D0306003D084400003E08\n0G")
+        .await;
     page.wait_for("[data-testid=problem]").await;
     page.click("[data-testid=problem][data-code='crc-mismatch']")
         .await;
@@ -192,7 +193,10 @@ async fn the_register_browser_finds_by_every_notation() {
     use frontend::router::Router;
     use shared::map::row::Model;
 
-    window().location().set_hash("#/device/XV-1/values").unwrap();
+    window()
+        .location()
+        .set_hash("#/device/XV-1/values")
+        .unwrap();
     let root: HtmlElement = document().create_element("div").unwrap().unchecked_into();
     // The style sheet is not here; what makes the list scroll is.
     let style = document().create_element("style").unwrap();

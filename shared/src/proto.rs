@@ -86,7 +86,7 @@ impl From<Read> for Block {
 
 /// From the page.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ToBackend {
     /// First message.
     Hello {
@@ -195,7 +195,7 @@ pub enum Outcome {
 
 /// From the backend.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
+#[serde(rename_all = "snake_case")]
 pub enum ToPage {
     /// First message.
     Hello {
@@ -296,7 +296,7 @@ mod tests {
         };
         check(
             &ToBackend::Hello { version: 1 },
-            r#"{"type":"hello","version":1}"#,
+            r#"{"hello":{"version":1}}"#,
         );
         let block = Block {
             table: TableName::Holding,
@@ -309,7 +309,7 @@ mod tests {
                 blocks: vec![block],
                 period_ms: 1000,
             },
-            r#"{"type":"watch","device":"XV-1","blocks":[{"table":"holding","start":3000,"count":31}],"period_ms":1000}"#,
+            r#"{"watch":{"device":"XV-1","blocks":[{"table":"holding","start":3000,"count":31}],"period_ms":1000}}"#,
         );
         check(
             &ToBackend::Read {
@@ -317,14 +317,14 @@ mod tests {
                 device: "XV-1".into(),
                 block,
             },
-            r#"{"type":"read","id":7,"device":"XV-1","block":{"table":"holding","start":3000,"count":31}}"#,
+            r#"{"read":{"id":7,"device":"XV-1","block":{"table":"holding","start":3000,"count":31}}}"#,
         );
         check(
             &ToBackend::Subscribe {
                 bus: "a".into(),
                 after: Some(9),
             },
-            r#"{"type":"subscribe","bus":"a","after":9}"#,
+            r#"{"subscribe":{"bus":"a","after":9}}"#,
         );
 
         let capture = ToPage::Capture {
@@ -336,7 +336,7 @@ mod tests {
             hex: "0103".into(),
         };
         let json =
-            r#"{"type":"capture","bus":"a","seq":1,"at_us":2,"way":"rx","ends":true,"hex":"0103"}"#;
+            r#"{"capture":{"bus":"a","seq":1,"at_us":2,"way":"rx","ends":true,"hex":"0103"}}"#;
         assert_eq!(serde_json::to_string(&capture).unwrap(), json);
         assert_eq!(serde_json::from_str::<ToPage>(json).unwrap(), capture);
     }
@@ -344,9 +344,9 @@ mod tests {
     #[test]
     fn no_message_writes() {
         for json in [
-            r#"{"type":"write","device":"XV-1"}"#,
-            r#"{"type":"send","hex":"010600000002"}"#,
-            r#"{"type":"read","id":1,"device":"x","function":6,"block":{"table":"coil","start":0,"count":1}}"#,
+            r#"{"write":{"device":"XV-1"}}"#,
+            r#"{"send":{"hex":"010600000002"}}"#,
+            r#"{"read":{"id":1,"device":"x","function":6,"block":{"table":"coil","start":0,"count":1}}}"#,
         ] {
             assert!(serde_json::from_str::<ToBackend>(json).is_err(), "{json}");
         }

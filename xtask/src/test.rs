@@ -41,7 +41,7 @@ fn steps(report: &mut Report) -> Result {
     })?;
     report.step("clippy", |_| {
         toolchain::ensure_wasm_target()?;
-        clippy(&["--workspace", "--all-targets"])?;
+        clippy(&["--workspace", "--all-targets", "--all-features"])?;
         clippy(&[
             "-p", "shared", "-p", "frontend", "-p", "tests", "--lib", "--bins", "--test", "wasm_*",
             "--target", WASM,
@@ -62,18 +62,22 @@ fn steps(report: &mut Report) -> Result {
     })?;
     let peers = report.step("peers", |_| peers::ensure())?;
     report.step("tests against peers", |log| {
-        let mut command = native("test", &["--features", "tests/peers", "--test", "peers"]);
-        log.run_tests("peers", peers.environment(&mut command))
+        shell::run(&mut native("build", &["--bin", "valvescope"]))?;
+        log.run_tests("peers", peers.environment(&mut with_binary("peers")))
     })?;
     report.step("end to end", |log| {
-        shell::run(&mut native("build", &["--bin", "valvescope"]))?;
-        let mut command = native("test", &["--features", "tests/browser", "--test", "e2e"]);
-        command.env(
-            "VALVESCOPE_BIN",
-            shell::target_dir().join("debug/valvescope"),
-        );
-        log.run_tests("e2e", browser.environment(&mut command))
+        log.run_tests("e2e", browser.environment(&mut with_binary("e2e")))
     })
+}
+
+/// One of the tests that start the built binary. They share their features, so that the helpers
+/// compile once.
+fn with_binary(test: &str) -> Command {
+    let features = "tests/peers,tests/browser";
+    let mut command = native("test", &["--features", features, "--test", test]);
+    let binary = shell::target_dir().join("debug/valvescope");
+    command.env("VALVESCOPE_BIN", binary);
+    command
 }
 
 /// A cargo verb over the packages tested natively.

@@ -86,10 +86,7 @@ mod tests {
         let news: Vec<&str> = news.iter().map(Utf8Bytes::as_str).collect();
         assert_eq!(
             news,
-            [
-                r#"{"type":"tick","now_us":2}"#,
-                r#"{"type":"tick","now_us":3}"#
-            ]
+            [r#"{"tick":{"now_us":2}}"#, r#"{"tick":{"now_us":3}}"#]
         );
         assert!(board.news(version).0.is_empty());
     }

@@ -3,6 +3,7 @@
 use super::{address, asked_to_end, block_on, log_to_stderr, refuse};
 use crate::app::{App, app};
 use crate::config::Config;
+use crate::listen::Limited;
 use crate::plant::Plant;
 use crate::ws::Hosts;
 use std::io::Write;
@@ -56,7 +57,7 @@ async fn serve(config: Config, listen: SocketAddr) -> ExitCode {
     say(&format!("listening on http://{listening}"));
     // Open sockets of pages would keep a graceful end waiting for ever; pages connect again.
     tokio::select! {
-        served = axum::serve(listener, router) => match served {
+        served = axum::serve(Limited::new(listener), router) => match served {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => refuse(format_args!("stopped serving: {error}")),
         },

@@ -369,3 +369,6 @@ fn not_allowed(block: Block) -> String {
         block.count, block.start
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 
 use backend::app::{App, app};
 use backend::config::Config;
+use backend::listen::Limited;
 use backend::plant::Plant;
 use backend::ws::Hosts;
 use futures_util::{SinkExt, StreamExt};
@@ -26,7 +27,7 @@ pub async fn serve(config: &Config) -> SocketAddr {
     let address = listener.local_addr().unwrap();
     let plant = Arc::new(Plant::start(config));
     let router = app(App::new(plant, Hosts::new(address, &[])));
-    tokio::spawn(async move { axum::serve(listener, router).await });
+    tokio::spawn(async move { axum::serve(Limited::new(listener), router).await });
     address
 }
 

@@ -12,7 +12,6 @@ use shared::tree::FieldId;
 use wasm_bindgen::JsCast;
 
 use crate::browser::{Narrow, copy, reveal};
-use crate::components::icon::{Glyph, Icon};
 use crate::markup::{facts, frame, hex, tree};
 use crate::state::selection::{Origin, Selection};
 use crate::state::tree::{Facts, Line, all_open, lines, reveal as open_to};
@@ -37,7 +36,10 @@ impl Parts {
     /// The selection, if it is in the frame that is shown.
     fn selection(self) -> Option<Selection> {
         let index = self.shown.with(|s| s.as_ref().map(|s| s.index))?;
-        self.selected.get().filter(|(f, _)| *f == index).map(|s| s.1)
+        self.selected
+            .get()
+            .filter(|(f, _)| *f == index)
+            .map(|s| s.1)
     }
 
     fn select(self, make: impl Fn(&Shown) -> Option<Selection>) {
@@ -133,7 +135,11 @@ pub fn FrameDetail(
         toggled: RwSignal::new(BTreeSet::new()),
         article: NodeRef::new(),
         per_row: Signal::derive(move || {
-            if narrow.is_some_and(|n| n.0.get()) { 8 } else { 16 }
+            if narrow.is_some_and(|n| n.0.get()) {
+                8
+            } else {
+                16
+            }
         }),
     };
     let (hex_node, tree_node) = (NodeRef::<Div>::new(), NodeRef::<Div>::new());
@@ -151,9 +157,10 @@ pub fn FrameDetail(
     });
     Effect::new(move |_| {
         let per_row = parts.per_row.get();
-        let html = parts
-            .shown
-            .with(|s| s.as_ref().map_or_else(String::new, |s| hex::bytes(s, per_row)));
+        let html = parts.shown.with(|s| {
+            s.as_ref()
+                .map_or_else(String::new, |s| hex::bytes(s, per_row))
+        });
         if let Some(node) = hex_node.get() {
             node.set_inner_html(&html);
         }
@@ -179,16 +186,19 @@ pub fn FrameDetail(
 
     let facts = move || {
         let field = parts.selection().and_then(|s| s.field);
-        let facts = parts.shown.with(|s| Facts::of(&s.as_ref()?.decoded, field?));
+        let facts = parts
+            .shown
+            .with(|s| Facts::of(&s.as_ref()?.decoded, field?));
         facts.map_or_else(
             || "Select a field or a byte to see where it is described.".to_owned(),
             |f| facts::field(&f),
         )
     };
     let expand = move |_| {
-        let all = parts
-            .shown
-            .with_untracked(|s| s.as_ref().map_or_else(BTreeSet::new, |s| all_open(&s.decoded)));
+        let all = parts.shown.with_untracked(|s| {
+            s.as_ref()
+                .map_or_else(BTreeSet::new, |s| all_open(&s.decoded))
+        });
         parts
             .toggled
             .update(|t| *t = if t.is_empty() { all } else { BTreeSet::new() });
@@ -219,6 +229,7 @@ pub fn FrameDetail(
                     parts.shown.with(|s| s.as_ref().map_or_else(String::new, |s| frame::title(s, &aside)))
                 }></div>
                 <div class="actions">
+                    <span class="quiet">"Copy"</span>
                     <CopyButtons/>
                 </div>
             </header>
@@ -264,7 +275,6 @@ fn CopyButtons() -> impl IntoView {
                     data-testid=format!("copy-{}", form.to_ascii_lowercase())
                     aria-label=format!("Copy as {form}")
                 >
-                    <Icon glyph=Glyph::Copy/>
                     <span aria-live="polite">{form}</span>
                 </button>
             }
@@ -417,7 +427,9 @@ fn each(root: &web_sys::Element, selector: &str, act: impl Fn(&web_sys::Element,
     };
     let name = selector.trim_matches(['[', ']']);
     for at in 0..found.length() {
-        let Some(element) = found.item(at) else { continue };
+        let Some(element) = found.item(at) else {
+            continue;
+        };
         let element: web_sys::Element = element.unchecked_into();
         let value = element.get_attribute(name).and_then(|v| v.parse().ok());
         if let Some(value) = value {

@@ -56,7 +56,9 @@ impl Glyph {
     #[must_use]
     pub const fn path(self) -> &'static str {
         match self {
-            Self::Decode => "M3 4h4v4H3zM3 12h4v4H3zM13 4h4M11 4h.01M11 8h6M11 12h3M17 12h.01M11 16h6",
+            Self::Decode => {
+                "M3 4h4v4H3zM3 12h4v4H3zM13 4h4M11 4h.01M11 8h6M11 12h3M17 12h.01M11 16h6"
+            }
             Self::Devices => "M3 9.5v7l7-3.5 7 3.5v-7L10 13zM10 13V5M6.5 5h7M7.5 2.5h5",
             Self::Traffic => "M3 7h12l-3-3M17 13H5l3 3",
             Self::Settings => "M3 6h7M14 6h3M3 14h3M10 14h7M12 4v4M8 12v4",
@@ -72,7 +74,9 @@ impl Glyph {
             Self::Play => "M7 4.5v11l8.5-5.5z",
             Self::Clear => "M4 6h12M8 6V4h4v2M6 6l.7 10.5h6.6L14 6",
             Self::Search => "M8.5 3.5a5 5 0 1 0 .01 0M12.5 12.5l4 4",
-            Self::Link => "M8.5 11.5l3-3M7 9l-2 2a2.8 2.8 0 0 0 4 4l2-2M13 11l2-2a2.8 2.8 0 0 0-4-4L9 7",
+            Self::Link => {
+                "M8.5 11.5l3-3M7 9l-2 2a2.8 2.8 0 0 0 4 4l2-2M13 11l2-2a2.8 2.8 0 0 0-4-4L9 7"
+            }
             Self::Note => "M10 3a7 7 0 1 0 .01 0M10 9v4.5M10 6.3v.2",
             Self::Lock => "M5 9h10v8H5zM7 9V6.5a3 3 0 0 1 6 0V9",
             Self::Up => "M10 16V4M5.5 8.5L10 4l4.5 4.5",

@@ -158,10 +158,9 @@ fn paste(store: DecodeStore, text: &str) {
 fn FramingChoice() -> impl IntoView {
     let store: DecodeStore = expect_context();
     let found = move || {
-        store.work.with(|w| {
-            w.as_ref()
-                .map_or("", |w| w.session.framing().label())
-        })
+        store
+            .work
+            .with(|w| w.as_ref().map_or("", |w| w.session.framing().label()))
     };
     let auto = move || match (store.framing.get(), found()) {
         (None, found) if !found.is_empty() => format!("Automatic: {found}"),
@@ -239,7 +238,11 @@ fn Found() -> impl IntoView {
     let words = move || {
         store.work.with(|w| {
             w.as_ref().map(|w| {
-                let stopped = if w.partial { ", reading was stopped" } else { "" };
+                let stopped = if w.partial {
+                    ", reading was stopped"
+                } else {
+                    ""
+                };
                 format!(
                     "{}: {}, {}, {}{stopped}",
                     w.name,
@@ -253,8 +256,8 @@ fn Found() -> impl IntoView {
     let progress = move || {
         store.progress.get().map(|p| {
             let percent = format!("{:.0} %", p.done * 100.0);
-            let frames = (p.frames > 0)
-                .then(|| format!(", {} frames", thousands(u64::from(p.frames))));
+            let frames =
+                (p.frames > 0).then(|| format!(", {} frames", thousands(u64::from(p.frames))));
             view! {
                 <span class="progress" role="status">
                     <progress max="1" prop:value=p.done></progress>

@@ -57,10 +57,7 @@ impl Sign {
     #[must_use]
     pub const fn paths(self) -> (&'static str, &'static str) {
         match self {
-            Self::Failure => (
-                "M10 1.5a8.5 8.5 0 1 0 .01 0z",
-                "M6.5 6.5l7 7M13.5 6.5l-7 7",
-            ),
+            Self::Failure => ("M10 1.5a8.5 8.5 0 1 0 .01 0z", "M6.5 6.5l7 7M13.5 6.5l-7 7"),
             Self::FunctionCheck => (
                 "M10 1.5l9 16.5H1z",
                 "M8 15l3.2-4.2M10.4 8.2a2 2 0 1 0 2.6 2.4l-1.6.2-.8-1z",

@@ -59,7 +59,9 @@ pub fn ProblemStrip() -> impl IntoView {
     });
     let cursor = RwSignal::new(None);
     Effect::new(move |_| {
-        let entry = cursor.get().and_then(|at| entries.with_untracked(|e| e.get(at).copied()));
+        let entry = cursor
+            .get()
+            .and_then(|at| entries.with_untracked(|e| e.get(at).copied()));
         if let Some(entry) = entry {
             jump(store, entry);
         }
@@ -79,7 +81,12 @@ pub fn ProblemStrip() -> impl IntoView {
         let (errors, warnings, _) = total.get();
         let listed = entries.with(|e| u64::try_from(e.len()).unwrap_or(u64::MAX));
         let all = errors + warnings;
-        (all > listed).then(|| format!(", the first {} are listed", crate::format::thousands(listed)))
+        (all > listed).then(|| {
+            format!(
+                ", the first {} are listed",
+                crate::format::thousands(listed)
+            )
+        })
     };
     let notes = move || {
         let (.., notes) = total.get();
@@ -159,7 +166,9 @@ fn jump(store: DecodeStore, entry: Entry) {
         Entry::Text(text) => {
             let frame = store.work.with_untracked(|w| {
                 let session = &w.as_ref()?.session;
-                frame_at(session.len(), text.offset, |i| session.frame(i).map(|f| f.end()))
+                frame_at(session.len(), text.offset, |i| {
+                    session.frame(i).map(|f| f.end())
+                })
             });
             if let Some(frame) = frame {
                 store.cursor.set(usize::try_from(frame).ok());

@@ -66,11 +66,14 @@ pub fn TrafficView(
     });
     let kind = move |unit: u8| {
         live.plant.with_untracked(|p| {
-            bus.with_value(|b| p.at(b, unit)).map_or(Device::None, |d| d.device)
+            bus.with_value(|b| p.at(b, unit))
+                .map_or(Device::None, |d| d.device)
         })
     };
     let time = move |at: Option<Micros>| {
-        let wall = live.plant.with_untracked(|p| p.wall_ms(at.map_or(0, Micros::get)));
+        let wall = live
+            .plant
+            .with_untracked(|p| p.wall_ms(at.map_or(0, Micros::get)));
         clock(wall, offset_minutes(wall))
     };
     let scratch = StoredValue::new(Decoded::default());
@@ -186,21 +189,15 @@ pub fn TrafficView(
         let missed = live
             .plant
             .with(|p| bus.with_value(|b| p.bus(b)).map_or(0, |b| b.missed));
-        (missed > 0).then(|| {
-            format!(
-                "{} did not reach this page.",
-                count(missed, "capture")
-            )
-        })
+        (missed > 0).then(|| format!("{} did not reach this page.", count(missed, "capture")))
     };
     let line = move || {
         live.plant.with(|p| {
-            bus.with_value(|b| p.bus(b)).map_or_else(String::new, |b| {
-                match b.line {
+            bus.with_value(|b| p.bus(b))
+                .map_or_else(String::new, |b| match b.line {
                     shared::proto::LineState::Up => b.info.line.clone(),
                     _ => format!("{}: {}", b.info.line, b.line_text),
-                }
-            })
+                })
         })
     };
     view! {

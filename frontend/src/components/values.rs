@@ -13,15 +13,17 @@ use crate::format::count;
 use crate::keys::on_action;
 use crate::live::Live;
 use crate::live::store::{PERIOD_MS, Polled};
-use crate::markup::values::{Around, detail, row as draw_row};
 use crate::markup::Markup;
+use crate::markup::values::{Around, detail, row as draw_row};
 use crate::router::Router;
 use crate::state::health::outcome;
 use crate::state::job::blocks;
 use crate::state::overview::watched;
 use crate::state::shortcuts::Action;
 use crate::state::tree::Facts;
-use crate::state::values::{Item, LEVELS, Opened, RawForm, as_answer, cell, filter, has_bits, items, place};
+use crate::state::values::{
+    Item, LEVELS, Opened, RawForm, as_answer, cell, filter, has_bits, items, place,
+};
 use crate::state::window::moved;
 use shared::address::Table;
 use shared::proto::Block;
@@ -89,11 +91,12 @@ pub fn ValuesView(
         });
         let watched = device.map(watched).unwrap_or_default();
         let is_watched = watched.iter().any(|b| holds(b, row))
-            || live
-                .polled
-                .with(|p| p.blocks.iter().any(|b| holds(b, row)));
+            || live.polled.with(|p| p.blocks.iter().any(|b| holds(b, row)));
         Around {
-            now: live.now.get().max(live.plant.with(|p| p.now(crate::task::now_ms()))),
+            now: live
+                .now
+                .get()
+                .max(live.plant.with(|p| p.now(crate::task::now_ms()))),
             period: is_watched.then_some(u64::from(PERIOD_MS) * 1000),
             reachable: reachable && live.conn.get().is_up(),
             raw: raw.get(),
@@ -101,8 +104,10 @@ pub fn ValuesView(
         }
     };
     let cell_of = move |item: Item| {
-        live.plant
-            .with(|p| tag.with_value(|t| p.device(t)).and_then(|d| cell(item, &d.image)))
+        live.plant.with(|p| {
+            tag.with_value(|t| p.device(t))
+                .and_then(|d| cell(item, &d.image))
+        })
     };
     let draw: DrawRow = Arc::new(move |at: usize, html: &mut Markup| {
         if let Some(item) = items.with(|i| i.get(at).copied()) {
@@ -120,14 +125,30 @@ pub fn ValuesView(
             });
         }
     });
-    let selected = move || cursor.get().and_then(|at| items.with(|i| i.get(at).copied()));
+    let selected = move || {
+        cursor
+            .get()
+            .and_then(|at| items.with(|i| i.get(at).copied()))
+    };
     let facts = move || {
         selected().map_or_else(String::new, |item| {
             let parts = live.plant.with(|p| {
                 let device = tag.with_value(|t| p.device(t))?;
-                parts(item, device.image.row(item.row()).is_some().then_some(&device.image)?)
+                parts(
+                    item,
+                    device
+                        .image
+                        .row(item.row())
+                        .is_some()
+                        .then_some(&device.image)?,
+                )
             });
-            detail(item, cell_of(item).as_ref(), &parts.unwrap_or_default())
+            detail(
+                map,
+                item,
+                cell_of(item).as_ref(),
+                &parts.unwrap_or_default(),
+            )
         })
     };
     on_action(move |action| match action {
@@ -237,7 +258,11 @@ fn Filters(
     let tables = Table::ALL.map(|t| (t.key(), t.label()));
     let names = groups(map).into_iter().map(|g| (g, g)).collect();
     let levels = LEVELS.map(|l| (l.key(), l.key()));
-    let access = [("r", "Read-only"), ("rw", "Writable"), ("rw!", "Moves or reconfigures")];
+    let access = [
+        ("r", "Read-only"),
+        ("rw", "Writable"),
+        ("rw!", "Moves or reconfigures"),
+    ];
     let reserved = router.setting("reserved");
     let query = router.setting("q");
     view! {
@@ -339,9 +364,16 @@ fn JobState(
         live.plant.with(|p| {
             let job = tag.with_value(|t| p.device(t))?.job.as_ref()?;
             let failed = job.failed.first().map(|f| {
-                let last = f.block.start.saturating_add(f.block.count.saturating_sub(1));
+                let last = f
+                    .block
+                    .start
+                    .saturating_add(f.block.count.saturating_sub(1));
                 let what = format!("{} to {last}", f.block.start);
-                let why = if f.text.is_empty() { outcome(f.outcome) } else { &f.text };
+                let why = if f.text.is_empty() {
+                    outcome(f.outcome)
+                } else {
+                    &f.text
+                };
                 let all = count(u64::try_from(job.failed.len()).unwrap_or(0), "block");
                 format!("{all} failed; {what}: {why}")
             });
@@ -349,15 +381,19 @@ fn JobState(
         })
     });
     let words = move || {
-        job.get().map_or_else(String::new, |(done, total, over, failed)| {
-            let progress = format!("{done} of {}", count(u64::try_from(total).unwrap_or(0), "block"));
-            match (over, failed) {
-                (false, None) => progress,
-                (false, Some(failed)) => format!("{progress} {failed}"),
-                (true, None) => format!("{progress} read"),
-                (true, Some(failed)) => failed,
-            }
-        })
+        job.get()
+            .map_or_else(String::new, |(done, total, over, failed)| {
+                let progress = format!(
+                    "{done} of {}",
+                    count(u64::try_from(total).unwrap_or(0), "block")
+                );
+                match (over, failed) {
+                    (false, None) => progress,
+                    (false, Some(failed)) => format!("{progress} {failed}"),
+                    (true, None) => format!("{progress} read"),
+                    (true, Some(failed)) => failed,
+                }
+            })
     };
     let running = move || job.with(|j| j.as_ref().is_some_and(|(.., over, _)| !over));
     view! {
@@ -378,7 +414,10 @@ fn JobState(
 /// The rows of some lines, each once, without those that can't be read.
 fn rows_of(items: &[Item], range: Range<usize>) -> Vec<&'static Row> {
     let mut rows: Vec<&'static Row> = Vec::new();
-    for item in items.get(range.start..range.end.min(items.len())).unwrap_or_default() {
+    for item in items
+        .get(range.start..range.end.min(items.len()))
+        .unwrap_or_default()
+    {
         let row = item.row();
         if rows.last().is_none_or(|last| !core::ptr::eq(*last, row)) {
             rows.push(row);

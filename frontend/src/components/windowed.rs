@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use leptos::html::Div;
@@ -76,13 +77,20 @@ pub fn Windowed(
         }
     };
 
-    let slots = RefCell::new(Vec::<Slot>::new());
+    let slots = RefCell::new(VecDeque::<Slot>::new());
     Effect::new(move |_| {
         let Some(rows) = rows.get() else { return };
         let slice = window().at(f64::from(scroll.get()));
         place(&rows, &slice);
         let chosen = cursor.get();
-        fill(&rows, &mut slots.borrow_mut(), &slice, chosen, testid, &draw);
+        fill(
+            &rows,
+            &mut slots.borrow_mut(),
+            &slice,
+            chosen,
+            testid,
+            &draw,
+        );
     });
 
     // The cursor is always in view.
@@ -183,20 +191,21 @@ fn place(rows: &web_sys::HtmlElement, slice: &Slice) {
 /// Brings the rows up to date; one that did not change is left alone.
 fn fill(
     rows: &web_sys::Element,
-    slots: &mut Vec<Slot>,
+    slots: &mut VecDeque<Slot>,
     slice: &Slice,
     chosen: Option<usize>,
     testid: &str,
     draw: &DrawRow,
 ) {
+    rotate(rows, slots, slice.rows.start);
     while slots.len() > slice.rows.len() {
-        if let Some(slot) = slots.pop() {
+        if let Some(slot) = slots.pop_back() {
             slot.element.remove();
         }
     }
     while slots.len() < slice.rows.len() {
         let Some(element) = new_row(rows) else { return };
-        slots.push(Slot {
+        slots.push_back(Slot {
             element,
             at: usize::MAX,
             chosen: false,
@@ -234,6 +243,31 @@ fn fill(
     }
 }
 
+/// After a short scroll most rows stay: those that left at one end are used again at the other.
+fn rotate(rows: &web_sys::Element, slots: &mut VecDeque<Slot>, start: usize) {
+    let Some(first) = slots.front().map(|s| s.at) else {
+        return;
+    };
+    let many = slots.len();
+    if start > first && start - first < many {
+        for _ in first..start {
+            if let Some(slot) = slots.pop_front() {
+                // Moves the element, which is there already.
+                let _infallible = rows.append_child(&slot.element);
+                slots.push_back(slot);
+            }
+        }
+    } else if first > start && first - start < many {
+        for _ in start..first {
+            let before = slots.front().map(|s| s.element.clone());
+            if let (Some(slot), Some(before)) = (slots.pop_back(), before) {
+                let _infallible = rows.insert_before(&slot.element, Some(&before));
+                slots.push_front(slot);
+            }
+        }
+    }
+}
+
 /// Replaces only the cells that changed, so that a button under the finger stays where it is.
 /// False if the row is another one altogether.
 fn patch(slot: &web_sys::Element, html: &str) -> bool {
@@ -245,7 +279,12 @@ fn patch(slot: &web_sys::Element, html: &str) -> bool {
         return false;
     };
     let (cells, next) = (old.children(), new.children());
-    if old.class_name() != new.class_name() || cells.length() != next.length() {
+    // The tag with its attributes says which row it is.
+    let tag = |row: &web_sys::Element| {
+        let html = row.outer_html();
+        html.split_once('>').map(|(tag, _)| tag.to_owned())
+    };
+    if tag(&old) != tag(&new) || cells.length() != next.length() {
         return false;
     }
     // Backwards, because a cell leaves the new row when it is put into the old one.

@@ -91,10 +91,7 @@ impl Live {
                 "This page was opened from a file, so there is no bridge. Decoding works.",
             )),
         }
-        let clock = set_interval_with_handle(
-            move || live.tick(),
-            Duration::from_millis(500),
-        );
+        let clock = set_interval_with_handle(move || live.tick(), Duration::from_millis(500));
         on_cleanup(move || {
             if let Ok(clock) = clock {
                 clock.clear();

@@ -54,7 +54,14 @@ pub fn row(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u6
     html.open(
         "div",
         &[
-            ("class", if silent { "device-row stale" } else { "device-row" }),
+            (
+                "class",
+                if silent {
+                    "device-row stale"
+                } else {
+                    "device-row"
+                },
+            ),
             ("data-testid", "device-row"),
             ("data-tag", &device.info.tag),
         ],
@@ -291,7 +298,11 @@ fn line(html: &mut Markup, class: &str, from: (i32, i32), to: (i32, i32)) {
 fn label(html: &mut Markup, class: &str, x: i32, y: i32, text: &str) {
     html.open(
         "text",
-        &[("class", class), ("x", &x.to_string()), ("y", &y.to_string())],
+        &[
+            ("class", class),
+            ("x", &x.to_string()),
+            ("y", &y.to_string()),
+        ],
     );
     html.text(text).close("text");
 }
@@ -309,7 +320,7 @@ pub fn valve(overview: &Overview) -> String {
         "svg",
         &[
             ("class", "valve"),
-            ("viewBox", "0 0 260 316"),
+            ("viewBox", "0 22 260 290"),
             ("role", "img"),
             ("aria-label", &words),
         ],
@@ -320,7 +331,8 @@ pub fn valve(overview: &Overview) -> String {
         "M96 206v-106h68v106M96 296h68",
         "M20 200v102M240 200v102",
     ] {
-        html.open("path", &[("class", "body"), ("d", d)]).close("path");
+        html.open("path", &[("class", "body"), ("d", d)])
+            .close("path");
     }
     rect(&mut html, "actuator", (88, 58, 84, 42));
     // A stem of 84 above a gate of 90 that travels 90.
@@ -338,7 +350,13 @@ pub fn valve(overview: &Overview) -> String {
         let y = 206 - percent * 9 / 10;
         line(&mut html, "axis", (188, y), (193, y));
         if percent % 50 == 0 {
-            label(&mut html, "scale-text start", 197, y + 4, &percent.to_string());
+            label(
+                &mut html,
+                "scale-text start",
+                197,
+                y + 4,
+                &percent.to_string(),
+            );
         }
     }
     for (is, y, text) in [
@@ -396,7 +414,10 @@ fn list(html: &mut Markup, title: &str, bits: &[Active], mark: Option<Sign>) {
     }
     html.open("ul", &[("class", "conditions")]);
     for bit in bits {
-        html.open("li", &[("data-testid", "condition"), ("data-key", bit.member.key)]);
+        html.open(
+            "li",
+            &[("data-testid", "condition"), ("data-key", bit.member.key)],
+        );
         if let Some(mark) = mark {
             sign(html, mark, "18");
         }

@@ -72,10 +72,7 @@ impl Markup {
                 "M6.5 6.5l7 7M13.5 6.5l-7 7M10 2a8 8 0 1 0 .01 0z",
             ),
             Severity::Warning => ("severity warning", "M10 2.5l8.5 15h-17zM10 8v4.5M10 15v.2"),
-            Severity::Note => (
-                "severity note",
-                "M10 3a7 7 0 1 0 .01 0M10 9v4.5M10 6.3v.2",
-            ),
+            Severity::Note => ("severity note", "M10 3a7 7 0 1 0 .01 0M10 9v4.5M10 6.3v.2"),
         };
         self.drawing(class, "1.8", path, Some(severity.key()))
     }
@@ -132,7 +129,9 @@ mod tests {
     #[test]
     fn text_can_not_become_markup() {
         let mut html = Markup::new();
-        html.open("b", &[("title", "\"><script>")]).text("<i>&").close("b");
+        html.open("b", &[("title", "\"><script>")])
+            .text("<i>&")
+            .close("b");
         assert_eq!(
             html.finish(),
             "<b title=\"&quot;&gt;&lt;script&gt;\">&lt;i&gt;&amp;</b>"

@@ -1,6 +1,6 @@
 //! Rows of the register browser, and all that is known about one.
 
-use shared::map::row::{Kind, Row, Trust};
+use shared::map::row::{DeviceMap, Kind, Row, Trust};
 use shared::value::Quality;
 
 use super::Markup;
@@ -46,7 +46,11 @@ pub fn row(html: &mut Markup, item: Item, cell: Option<&Cell>, around: &Around) 
     );
     html.open("span", &[("class", "value-chevron")]);
     if !is_bit && has_bits(row) {
-        let words = if around.open { "Hide bits" } else { "Show bits" };
+        let words = if around.open {
+            "Hide bits"
+        } else {
+            "Show bits"
+        };
         let class = if around.open { "open" } else { "" };
         html.open(
             "button",
@@ -151,7 +155,7 @@ fn quality(html: &mut Markup, row: &Row, cell: Option<&Cell>, around: &Around) {
 
 /// Everything about a line of the register browser.
 #[must_use]
-pub fn detail(item: Item, cell: Option<&Cell>, parts: &[Facts]) -> String {
+pub fn detail(map: &DeviceMap, item: Item, cell: Option<&Cell>, parts: &[Facts]) -> String {
     let row = item.row();
     let (address, number) = addresses(row);
     let mut html = Markup::new();
@@ -168,7 +172,11 @@ pub fn detail(item: Item, cell: Option<&Cell>, parts: &[Facts]) -> String {
         );
     }
     fact(&mut html, "Table", row.table.label());
-    fact(&mut html, "Address", &format!("{address} · number {number}"));
+    fact(
+        &mut html,
+        "Address",
+        &format!("{address} · number {number}"),
+    );
     if let Some(cell) = cell {
         raw_words(&mut html, row, cell);
         fact(&mut html, "Quality", cell.quality.label());
@@ -199,13 +207,23 @@ pub fn detail(item: Item, cell: Option<&Cell>, parts: &[Facts]) -> String {
     if !row.note.is_empty() {
         fact(&mut html, "Note", row.note);
     }
-    if let Some(read) = row.reading {
+    let mentioned = mentioned(row.note).filter_map(|id| map.reading(id));
+    for read in row.reading.into_iter().chain(mentioned) {
         reading(&mut html, read);
     }
     html.close("dl");
     members(&mut html, row, cell);
     decoded_parts(&mut html, parts);
     html.finish()
+}
+
+/// The ids of readings that a note mentions: `E41`.
+fn mentioned(note: &str) -> impl Iterator<Item = &str> {
+    note.split(|c: char| !c.is_ascii_alphanumeric())
+        .filter(|word| {
+            word.strip_prefix('E')
+                .is_some_and(|n| n.len() == 2 && n.bytes().all(|b| b.is_ascii_digit()))
+        })
 }
 
 fn raw_words(html: &mut Markup, row: &Row, cell: &Cell) {
@@ -314,9 +332,22 @@ mod tests {
     }
 
     #[test]
+    fn notes_lead_to_their_readings() {
+        let note = "Bits 0 to 15 match; see also E41, E5x and EFS.";
+        assert_eq!(mentioned(note).collect::<Vec<_>>(), ["E41"]);
+    }
+
+    #[test]
     fn the_detail_has_all_facts() {
-        let html = detail(position(), Some(&cell()), &[]);
-        for part in ["Holding register", "403005", "u16", "0 to 1000", "VCIOM-16345-EN"] {
+        let map = Model::Icon3000v2.map();
+        let html = detail(map, position(), Some(&cell()), &[]);
+        for part in [
+            "Holding register",
+            "403005",
+            "u16",
+            "0 to 1000",
+            "VCIOM-16345-EN",
+        ] {
             assert!(html.contains(part), "{part}: {html}");
         }
     }

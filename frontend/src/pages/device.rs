@@ -36,9 +36,10 @@ pub fn DevicePage(
     let draw = move |make: fn(&DeviceState, &Overview, u64, bool) -> String| {
         let (now, up) = (live.now.get(), live.conn.get().is_up());
         live.plant.with(|p| {
-            tag.with_value(|t| p.device(t)).map_or_else(String::new, |d| {
-                make(d, &Overview::of(d.device, &d.image), now, up)
-            })
+            tag.with_value(|t| p.device(t))
+                .map_or_else(String::new, |d| {
+                    make(d, &Overview::of(d.device, &d.image), now, up)
+                })
         })
     };
     let missing = move || {
@@ -66,13 +67,16 @@ pub fn DevicePage(
         (None, _) => ().into_any(),
         (Some(kind), Tab::Values) => match kind.map() {
             Some(map) => values(tag.get_value(), map),
-            None => view! { <p class="empty">"No map describes this kind of device."</p> }.into_any(),
+            None => {
+                view! { <p class="empty">"No map describes this kind of device."</p> }.into_any()
+            }
         },
         (Some(_), Tab::Traffic) => {
             let place = live.plant.with_untracked(|p| {
                 tag.with_value(|t| p.device(t).map(|d| (d.info.bus.clone(), d.info.unit)))
             });
-            place.map(|(bus, unit)| view! { <TrafficView bus=bus only=Some(unit)/> })
+            place
+                .map(|(bus, unit)| view! { <TrafficView bus=bus only=Some(unit)/> })
                 .into_any()
         }
         (Some(_), Tab::Overview) => view! {

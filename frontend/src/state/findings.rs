@@ -75,12 +75,7 @@ impl Findings {
 }
 
 /// Decodes an entry; of a long run of noise only the beginning.
-pub fn decode_clipped(
-    session: &Session,
-    index: u32,
-    context: &Context,
-    out: &mut Decoded,
-) -> bool {
+pub fn decode_clipped(session: &Session, index: u32, context: &Context, out: &mut Decoded) -> bool {
     let Some(frame) = session.frame(index) else {
         return false;
     };

@@ -89,8 +89,14 @@ mod tests {
 
     #[test]
     fn old_and_unreachable_values_are_stale() {
-        assert_eq!(freshness(1_500_000, Some(1_000_000), true), Freshness::Fresh);
-        assert_eq!(freshness(3_500_000, Some(1_000_000), true), Freshness::Stale);
+        assert_eq!(
+            freshness(1_500_000, Some(1_000_000), true),
+            Freshness::Fresh
+        );
+        assert_eq!(
+            freshness(3_500_000, Some(1_000_000), true),
+            Freshness::Stale
+        );
         assert_eq!(freshness(900_000_000, None, true), Freshness::Fresh);
         assert_eq!(freshness(0, None, false), Freshness::Stale);
     }

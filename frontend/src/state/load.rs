@@ -103,8 +103,7 @@ impl Loader {
     fn read(&mut self, piece: &[u8]) {
         match self.form {
             Some(Form::Hex) => {
-                self.reader
-                    .push(piece, &mut self.bytes, &mut self.problems);
+                self.reader.push(piece, &mut self.bytes, &mut self.problems);
                 self.cut_problems();
             }
             _ => self.bytes.extend_from_slice(piece),

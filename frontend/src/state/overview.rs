@@ -319,7 +319,10 @@ mod tests {
         assert_eq!(closed.state, "Closed");
         let none = Overview::of(Device::Icon3000, &Image::new());
         assert_eq!(none.state, "Not read yet");
-        assert_eq!(Overview::of(Device::None, &Image::new()), Overview::default());
+        assert_eq!(
+            Overview::of(Device::None, &Image::new()),
+            Overview::default()
+        );
     }
 
     #[test]

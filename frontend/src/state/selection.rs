@@ -44,9 +44,13 @@ impl Selection {
     #[must_use]
     pub fn byte(decoded: &Decoded, byte: u16) -> Self {
         let field = decoded.owner(byte);
-        let place = field
-            .and_then(|id| decoded.field(id))
-            .map_or_else(|| Place { start: byte, len: 1 }, |f| f.place);
+        let place = field.and_then(|id| decoded.field(id)).map_or_else(
+            || Place {
+                start: byte,
+                len: 1,
+            },
+            |f| f.place,
+        );
         Self {
             field,
             place,
@@ -99,6 +103,10 @@ mod tests {
     fn a_problem_of_the_whole_frame_selects_no_field() {
         let decoded = decoded();
         assert_eq!(Selection::problem(&decoded, Place::new(0, 8)).field, None);
-        assert!(Selection::problem(&decoded, Place::new(6, 2)).field.is_some());
+        assert!(
+            Selection::problem(&decoded, Place::new(6, 2))
+                .field
+                .is_some()
+        );
     }
 }

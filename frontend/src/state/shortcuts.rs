@@ -28,7 +28,10 @@ pub const KEYS: [(&str, &str); 12] = [
     ("?", "this list"),
     ("/", "search, or the input"),
     ("j  k", "next and previous entry"),
-    ("↑ ↓ ← →", "move in lists, tree and bytes; open and close fields"),
+    (
+        "↑ ↓ ← →",
+        "move in lists, tree and bytes; open and close fields",
+    ),
     ("Home  End", "first and last entry"),
     ("Enter", "open the entry"),
     ("g d", "Decode"),

@@ -69,11 +69,20 @@ mod tests {
         let session = session();
         let all = Filter::default();
         assert_eq!(listed(&session, &all), [0, 1, 2, 3]);
-        let unit = Filter { unit: Some(7), ..all.clone() };
+        let unit = Filter {
+            unit: Some(7),
+            ..all.clone()
+        };
         assert_eq!(listed(&session, &unit), [2, 3]);
-        let function = Filter { function: Some(4), ..all.clone() };
+        let function = Filter {
+            function: Some(4),
+            ..all.clone()
+        };
         assert_eq!(listed(&session, &function), [2, 3]);
-        let problems = Filter { problems: true, ..all.clone() };
+        let problems = Filter {
+            problems: true,
+            ..all.clone()
+        };
         assert_eq!(listed(&session, &problems), [3]);
         let late = Filter { from: 3, ..all };
         assert_eq!(listed(&session, &late), [3]);

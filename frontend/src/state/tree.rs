@@ -253,10 +253,19 @@ mod tests {
         let lines = lines(&shown.decoded, &BTreeSet::new());
         let at = lines.iter().position(|l| !l.leaf && !l.open).unwrap();
         assert_eq!(step("ArrowDown", &lines, None), Step::To(lines[0].id));
-        assert_eq!(step("ArrowRight", &lines, Some(at)), Step::Toggle(lines[at].id));
-        assert_eq!(step("ArrowUp", &lines, Some(at)), Step::To(lines[at - 1].id));
+        assert_eq!(
+            step("ArrowRight", &lines, Some(at)),
+            Step::Toggle(lines[at].id)
+        );
+        assert_eq!(
+            step("ArrowUp", &lines, Some(at)),
+            Step::To(lines[at - 1].id)
+        );
         assert_eq!(step("x", &lines, Some(at)), Step::Nothing);
-        assert_eq!(step("End", &lines, Some(at)), Step::To(lines[lines.len() - 1].id));
+        assert_eq!(
+            step("End", &lines, Some(at)),
+            Step::To(lines[lines.len() - 1].id)
+        );
     }
 
     #[test]

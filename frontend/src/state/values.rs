@@ -310,7 +310,10 @@ mod tests {
 
     #[test]
     fn texts_are_decoded_as_their_answer() {
-        let image = image(3056, &[0x5856, 0x2D31, 0x3031, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+        let image = image(
+            3056,
+            &[0x5856, 0x2D31, 0x3031, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
+        );
         let tag = cell(Item::Row(row("valve_tag_name")), &image).unwrap();
         assert_eq!(tag.text, "XV-101");
         let curve: Vec<u16> = (0..64).collect();
@@ -339,7 +342,10 @@ mod tests {
 
     #[test]
     fn raw_words_in_three_forms() {
-        assert_eq!(RawForm::Hex.write(&[1, 2, 3, 4, 5], false), "0001 0002 0003 0004 …");
+        assert_eq!(
+            RawForm::Hex.write(&[1, 2, 3, 4, 5], false),
+            "0001 0002 0003 0004 …"
+        );
         assert_eq!(RawForm::Decimal.write(&[452], false), "452");
         assert_eq!(RawForm::Binary.write(&[5], false), "0000 0000 0000 0101");
         assert_eq!(RawForm::Hex.write(&[1], true), "1");

@@ -99,7 +99,9 @@ impl Window {
     /// Rows that fit into the window, for paging.
     #[must_use]
     pub fn page(&self) -> usize {
-        ((self.view / self.row).floor() as usize).saturating_sub(1).max(1)
+        ((self.view / self.row).floor() as usize)
+            .saturating_sub(1)
+            .max(1)
     }
 }
 

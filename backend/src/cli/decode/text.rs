@@ -54,12 +54,13 @@ pub(super) fn write_frame(
 ) -> fmt::Result {
     let paint = Paint(colour);
     let (on, off) = paint.head();
-    let (offset, len) = (frame.offset, frame.len);
+    let offset = frame.offset;
+    let len = match frame.len {
+        1 => "1 byte".to_owned(),
+        n => format!("{n} bytes"),
+    };
     if frame.is_noise() {
-        write!(
-            out,
-            "{on}#{index}  noise{off}  offset {offset}, {len} bytes"
-        )?;
+        write!(out, "{on}#{index}  noise{off}  offset {offset}, {len}")?;
     } else {
         let role = match frame.role {
             Role::Request => "request",
@@ -71,7 +72,7 @@ pub(super) fn write_frame(
         let name = shared::pdu::names::function(function).unwrap_or("unknown function");
         write!(
             out,
-            "{on}#{index}  {role}  unit {}  FC {function:02} {name}{off}  offset {offset}, {len} bytes",
+            "{on}#{index}  {role}  unit {}  FC {function:02} {name}{off}  offset {offset}, {len}",
             frame.unit
         )?;
         match (frame.pair(), frame.role) {
