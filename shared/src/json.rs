@@ -17,14 +17,22 @@ struct Quoted<'a>(&'a str);
 impl fmt::Display for Quoted<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_char('"')?;
-        for c in self.0.chars() {
-            match c {
-                '"' => f.write_str("\\\"")?,
-                '\\' => f.write_str("\\\\")?,
-                '\u{0}'..='\u{1F}' | '\u{7F}' => write!(f, "\\u{:04x}", u32::from(c))?,
-                c => f.write_char(c)?,
+        // Nearly all text has nothing to escape and goes out in one piece.
+        let escaped = |b: &u8| matches!(b, b'"' | b'\\' | 0..=0x1F | 0x7F);
+        let mut rest = self.0;
+        while let Some(at) = rest.bytes().position(|b| escaped(&b)) {
+            let (clean, from) = rest.split_at_checked(at).unwrap_or((rest, ""));
+            f.write_str(clean)?;
+            let mut chars = from.chars();
+            match chars.next() {
+                Some('"') => f.write_str("\\\"")?,
+                Some('\\') => f.write_str("\\\\")?,
+                Some(c) => write!(f, "\\u{:04x}", u32::from(c))?,
+                None => {}
             }
+            rest = chars.as_str();
         }
+        f.write_str(rest)?;
         f.write_char('"')
     }
 }

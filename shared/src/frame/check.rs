@@ -6,7 +6,14 @@ use crate::place::Place;
 use crate::problem::Cause;
 
 /// Sixteen tables: four times the speed of one on frames of the usual size.
+#[cfg(not(target_arch = "wasm32"))]
 static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_MODBUS);
+
+/// In a page the same tables are computed at first use: 8 kB that no compression makes smaller
+/// need not travel.
+#[cfg(target_arch = "wasm32")]
+static CRC: std::sync::LazyLock<Crc<u16, Table<16>>> =
+    std::sync::LazyLock::new(|| Crc::<u16, Table<16>>::new(&CRC_16_MODBUS));
 
 /// The CRC of a Modbus RTU frame, computed over unit, function and data.
 ///
