@@ -217,7 +217,7 @@ impl DecodeStore {
 
     fn accept(self, name: String, loader: Loader, partial: bool, ticket: &Ticket) {
         let work = Work::new(name, loader.finish(), partial);
-        let first = (work.session.len() > 0).then_some(0);
+        let first = (!work.session.is_empty()).then_some(0);
         let keep = self
             .cursor
             .get_untracked()

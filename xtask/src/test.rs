@@ -47,7 +47,7 @@ fn steps(report: &mut Report) -> Result {
             "--target", WASM,
         ])
     })?;
-    report.step("page", |_| size::size(&web::web()?))?;
+    report.step("page", |_| size::limit(&web::web()?))?;
     report.step("native tests", |log| {
         log.run_tests("native", &mut native("test", &["--no-fail-fast"]))?;
         log.run_tests("xtask", &mut shell::cargo(["test", "-p", "xtask"]))
@@ -62,7 +62,7 @@ fn steps(report: &mut Report) -> Result {
     })?;
     let peers = report.step("peers", |_| peers::ensure())?;
     report.step("tests against peers", |log| {
-        shell::run(&mut native("build", &["--bin", "valvescope"]))?;
+        shell::run(&mut native("build", &BINARY_AND_ITS_TESTS))?;
         log.run_tests("peers", peers.environment(&mut with_binary("peers")))
     })?;
     report.step("end to end", |log| {
@@ -70,20 +70,34 @@ fn steps(report: &mut Report) -> Result {
     })
 }
 
-/// One of the tests that start the built binary. They share their features, so that the helpers
-/// compile once.
-fn with_binary(test: &str) -> Command {
-    let features = "tests/peers,tests/browser";
-    let mut command = native("test", &["--features", features, "--test", test]);
-    let binary = shell::target_dir().join("debug/valvescope");
-    command.env("VALVESCOPE_BIN", binary);
-    command
-}
-
 /// A cargo verb over the packages tested natively.
 fn native(verb: &str, args: &[&str]) -> Command {
     let mut command = shell::cargo([verb]);
     command.args(NATIVE).args(args);
+    command
+}
+
+/// Selects the binary together with the tests that start it: without a test among the targets,
+/// cargo would leave out the dev-dependencies, unify other features and compile most of it again.
+const BINARY_AND_ITS_TESTS: [&str; 8] = [
+    "--bin",
+    "valvescope",
+    "--test",
+    "peers",
+    "--test",
+    "e2e",
+    "--features",
+    BINARY_FEATURES,
+];
+
+/// The features of those tests; the same for both, so that the helpers compile once.
+const BINARY_FEATURES: &str = "tests/peers,tests/browser";
+
+/// One of the tests that start the binary.
+fn with_binary(test: &str) -> Command {
+    let mut command = native("test", &["--features", BINARY_FEATURES, "--test", test]);
+    let binary = shell::target_dir().join("debug/valvescope");
+    command.env("VALVESCOPE_BIN", binary);
     command
 }
 

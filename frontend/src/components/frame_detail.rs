@@ -287,14 +287,13 @@ fn CopyButtons() -> impl IntoView {
 fn come_into_view(parts: Parts, selection: Selection) {
     if selection.origin != Origin::Tree
         && let Some(id) = selection.field
+        && parts.lines().iter().all(|line| line.id != id)
     {
-        if parts.lines().iter().all(|line| line.id != id) {
-            parts.shown.with_untracked(|s| {
-                if let Some(shown) = s {
-                    parts.toggled.update(|t| open_to(&shown.decoded, t, id));
-                }
-            });
-        }
+        parts.shown.with_untracked(|s| {
+            if let Some(shown) = s {
+                parts.toggled.update(|t| open_to(&shown.decoded, t, id));
+            }
+        });
     }
     request_animation_frame(move || {
         let byte = parts.find("data-offset", u32::from(selection.place.start));

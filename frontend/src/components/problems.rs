@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use leptos::prelude::*;
+use shared::frame::Frame;
 use shared::place::Place;
 use shared::problem::Problem;
 use shared::text::TextProblem;
@@ -167,7 +168,7 @@ fn jump(store: DecodeStore, entry: Entry) {
             let frame = store.work.with_untracked(|w| {
                 let session = &w.as_ref()?.session;
                 frame_at(session.len(), text.offset, |i| {
-                    session.frame(i).map(|f| f.end())
+                    session.frame(i).map(Frame::end)
                 })
             });
             if let Some(frame) = frame {

@@ -3,7 +3,7 @@
 use shared::decode::{Context, pdu_of};
 use shared::frame::{Frame, Marks, Role};
 use shared::pdu::{Asked, names};
-use shared::problem::{Finding, Severity};
+use shared::problem::{Finding, Problem, Severity};
 use shared::session::Session;
 use shared::tree::{Decoded, Name};
 use shared::value::Value;
@@ -35,7 +35,7 @@ pub fn summary(
     if !decode_clipped(session, index, context, scratch) {
         return None;
     }
-    let worst = scratch.problems().iter().map(|p| p.severity()).max();
+    let worst = scratch.problems().iter().map(Problem::severity).max();
     Some(Summary {
         frame,
         function: function(&frame),
