@@ -7,6 +7,7 @@ use crate::components::conn::ConnState;
 use crate::components::help::HelpOverlay;
 use crate::components::rail::Rail;
 use crate::decode_store::DecodeStore;
+use crate::erased::memo;
 use crate::keys::{KeyBus, on_action};
 use crate::live::Live;
 use crate::pages::decode::DecodePage;
@@ -48,7 +49,7 @@ pub fn App() -> impl IntoView {
         router.go(&Route::to(screen));
     });
     Live::provide();
-    let page = Memo::new(move |_| match router.route().screen {
+    let page = memo(move || match router.route().screen {
         Screen::Decode => Page::Decode,
         Screen::Devices => Page::Devices,
         Screen::Device(..) => Page::Device,

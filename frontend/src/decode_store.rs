@@ -34,6 +34,19 @@ pub struct Progress {
     pub frames: u32,
 }
 
+impl Progress {
+    /// How far, in percent.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a part of 1 becomes 0 to 100"
+    )]
+    pub fn percent(&self) -> u8 {
+        (self.done.clamp(0.0, 1.0) * 100.0) as u8
+    }
+}
+
 /// State of the decode page; lives as long as the page, so that leaving and coming back keeps it.
 #[derive(Clone, Copy, Debug)]
 pub struct DecodeStore {

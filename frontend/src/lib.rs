@@ -37,6 +37,7 @@ pub mod app;
 pub mod browser;
 pub mod components;
 pub mod decode_store;
+pub mod erased;
 pub mod format;
 pub mod keys;
 pub mod live;

@@ -3,6 +3,7 @@
 use leptos::ev;
 use leptos::prelude::*;
 
+use crate::erased::memo;
 use crate::state::route::{Route, Screen};
 
 /// Where the page is.
@@ -47,13 +48,13 @@ impl Router {
     /// Follows the screen only.
     #[must_use]
     pub fn screen(self) -> Memo<Screen> {
-        Memo::new(move |_| self.0.with(|r| r.screen.clone()))
+        memo(move || self.0.with(|r| r.screen.clone()))
     }
 
     /// Follows one setting.
     #[must_use]
     pub fn setting(self, key: &'static str) -> Memo<String> {
-        Memo::new(move |_| self.0.with(|r| r.get(key).unwrap_or_default().to_owned()))
+        memo(move || self.0.with(|r| r.get(key).unwrap_or_default().to_owned()))
     }
 
     /// Goes somewhere; the browser's "back" leads here again.

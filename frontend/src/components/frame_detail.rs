@@ -3,8 +3,6 @@
 //! Hovering or selecting a byte lights its field and the other way round; who selected does not
 //! scroll, the others do.
 
-use std::collections::BTreeSet;
-
 use leptos::html::{Article, Div};
 use leptos::prelude::*;
 use leptos::task::spawn_local;
@@ -12,6 +10,7 @@ use shared::tree::FieldId;
 use wasm_bindgen::JsCast;
 
 use crate::browser::{Narrow, copy, reveal};
+use crate::erased::{effect, memo};
 use crate::markup::{facts, frame, hex, tree};
 use crate::state::selection::{Origin, Selection};
 use crate::state::tree::{Facts, Line, all_open, lines, reveal as open_to};
@@ -27,7 +26,7 @@ struct Parts {
     shown: Memo<Option<Shown>>,
     selected: RwSignal<Option<(u32, Selection)>>,
     hovered: RwSignal<Option<u32>>,
-    toggled: RwSignal<BTreeSet<u32>>,
+    toggled: RwSignal<Vec<u32>>,
     article: NodeRef<Article>,
     per_row: Signal<usize>,
 }
@@ -50,11 +49,13 @@ impl Parts {
     }
 
     fn toggle(self, id: u32) {
-        self.toggled.update(|t| {
-            if !t.remove(&id) {
-                t.insert(id);
-            }
-        });
+        self.toggled
+            .update(|t| match t.iter().position(|toggled| *toggled == id) {
+                Some(at) => {
+                    t.swap_remove(at);
+                }
+                None => t.push(id),
+            });
     }
 
     fn lines(self) -> Vec<Line> {
@@ -129,10 +130,10 @@ pub fn FrameDetail(
 ) -> impl IntoView {
     let narrow = use_context::<Narrow>();
     let parts = Parts {
-        shown: Memo::new(move |_| shown.get()),
+        shown: memo(move || shown.get()),
         selected: selected.0,
         hovered: RwSignal::new(None),
-        toggled: RwSignal::new(BTreeSet::new()),
+        toggled: RwSignal::new(Vec::new()),
         article: NodeRef::new(),
         per_row: Signal::derive(move || {
             if narrow.is_some_and(|n| n.0.get()) {
@@ -150,12 +151,12 @@ pub fn FrameDetail(
     };
 
     // Another frame: nothing is hovered or toggled in it.
-    Effect::new(move |_| {
+    effect(move || {
         parts.shown.track();
         parts.hovered.set(None);
-        parts.toggled.set(BTreeSet::new());
+        parts.toggled.set(Vec::new());
     });
-    Effect::new(move |_| {
+    effect(move || {
         let per_row = parts.per_row.get();
         let html = parts.shown.with(|s| {
             s.as_ref()
@@ -166,7 +167,7 @@ pub fn FrameDetail(
         }
         untrack(|| parts.mark());
     });
-    Effect::new(move |_| {
+    effect(move || {
         let html = parts.shown.with(|s| {
             s.as_ref().map_or_else(String::new, |s| {
                 parts.toggled.with(|t| tree::tree(&s.decoded, t))
@@ -177,8 +178,8 @@ pub fn FrameDetail(
         }
         untrack(|| parts.mark());
     });
-    Effect::new(move |_| parts.mark());
-    Effect::new(move |_| {
+    effect(move || parts.mark());
+    effect(move || {
         if let Some(selection) = parts.selection() {
             come_into_view(parts, selection);
         }
@@ -195,13 +196,12 @@ pub fn FrameDetail(
         )
     };
     let expand = move |_| {
-        let all = parts.shown.with_untracked(|s| {
-            s.as_ref()
-                .map_or_else(BTreeSet::new, |s| all_open(&s.decoded))
-        });
+        let all = parts
+            .shown
+            .with_untracked(|s| s.as_ref().map_or_else(Vec::new, |s| all_open(&s.decoded)));
         parts
             .toggled
-            .update(|t| *t = if t.is_empty() { all } else { BTreeSet::new() });
+            .update(|t| *t = if t.is_empty() { all } else { Vec::new() });
     };
     let is_empty = move || parts.shown.with(Option::is_none);
     view! {
@@ -248,7 +248,7 @@ pub fn FrameDetail(
                 <span>"Raw"</span>
                 <span>"Source"</span>
                 <button class="quiet-button" data-testid="expand-all" on:click=expand>
-                    {move || if parts.toggled.with(BTreeSet::is_empty) { "All bits" } else { "Fewer" }}
+                    {move || if parts.toggled.with(Vec::is_empty) { "All bits" } else { "Fewer" }}
                 </button>
             </div>
             <div

@@ -1,37 +1,16 @@
 //! The list of keys.
 
+use std::sync::Arc;
+
 use leptos::html::Button;
 use leptos::prelude::*;
 
+use crate::components::drawn::Drawn;
 use crate::components::icon::{Glyph, Icon};
+use crate::erased::effect;
 use crate::keys::on_action;
-use crate::state::shortcuts::{Action, KEYS};
-
-/// The keys as a table.
-#[component]
-pub fn KeyTable() -> impl IntoView {
-    view! {
-        <table class="keys">
-            <tbody>
-                {KEYS
-                    .map(|(keys, what)| {
-                        view! {
-                            <tr>
-                                <th scope="row">
-                                    {keys
-                                        .split(' ')
-                                        .filter(|k| !k.is_empty())
-                                        .map(|k| view! { <kbd>{k}</kbd> })
-                                        .collect::<Vec<_>>()}
-                                </th>
-                                <td>{what}</td>
-                            </tr>
-                        }
-                    })}
-            </tbody>
-        </table>
-    }
-}
+use crate::markup::about;
+use crate::state::shortcuts::Action;
 
 /// The keys in a window of their own, opened by `?` and closed by Escape.
 #[component]
@@ -43,7 +22,7 @@ pub fn HelpOverlay() -> impl IntoView {
         Action::Close => set_open.set(false),
         _ => {}
     });
-    Effect::new(move |_| {
+    effect(move || {
         if open.get()
             && let Some(button) = close.get()
         {
@@ -73,7 +52,7 @@ pub fn HelpOverlay() -> impl IntoView {
                             <Icon glyph=Glyph::Close size=20/>
                         </button>
                     </header>
-                    <KeyTable/>
+                    <Drawn class="" draw=Arc::new(about::keys)/>
                 </div>
             </div>
         </Show>

@@ -1,5 +1,7 @@
 //! What is to be decoded: paste, type, drop, open, or try a sample.
 
+use std::sync::Arc;
+
 use leptos::ev;
 use leptos::html::Input;
 use leptos::prelude::*;
@@ -8,11 +10,12 @@ use shared::frame::Framing;
 use wasm_bindgen::JsCast;
 
 use crate::browser::value_of;
+use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::icon::{Glyph, Icon};
 use crate::decode_store::DecodeStore;
-use crate::format::{count, size, thousands};
-use crate::state::samples::SAMPLES;
-use crate::state::work::form_label;
+use crate::markup::Markup;
+use crate::markup::decode::{self, Choices};
+use crate::state::samples::by_key;
 
 /// Longest text that is put into the field; longer ones are decoded all the same.
 const SHOWN: usize = 20_000;
@@ -90,14 +93,20 @@ pub fn DecodeInput() -> impl IntoView {
             store.open_file(chosen);
         }
     };
-    let is_open = move || store.work.with(Option::is_some);
+    let tools: Draw = Arc::new(move |html: &mut Markup| draw_choices(store, html));
+    let on_act = Callback::new(move |act: Act| match act.name.as_str() {
+        "framing" => store.choose_framing(Framing::from_key(&act.value)),
+        "device" => store.choose_device(Device::from_key(&act.value)),
+        "sample" => {
+            if let Some(sample) = by_key(&act.value) {
+                store.open_sample(sample);
+            }
+        }
+        "cancel" => store.cancel(),
+        _ => store.clear(),
+    });
     view! {
-        <section
-            class="input"
-            class:collapsed=store.collapsed
-            class:over=over
-            aria-label="Input"
-        >
+        <section class="input" class:collapsed=store.collapsed class:over=over aria-label="Input">
             <div class="input-row">
                 <textarea
                     data-testid="paste"
@@ -110,36 +119,19 @@ pub fn DecodeInput() -> impl IntoView {
                     prop:value=store.text
                     on:input=on_input
                 ></textarea>
-                <div class="actions">
-                    <label class="button" data-testid="open-file">
-                        <Icon glyph=Glyph::File/>
-                        "Open file"
-                        <input
-                            type="file"
-                            class="hidden-input"
-                            data-testid="file"
-                            node_ref=file
-                            on:change=on_file
-                        />
-                    </label>
-                    <Show when=is_open>
-                        <button
-                            class="button"
-                            data-testid="clear"
-                            on:click=move |_| store.clear()
-                        >
-                            <Icon glyph=Glyph::Clear/>
-                            "Clear"
-                        </button>
-                    </Show>
-                </div>
+                <label class="button" data-testid="open-file">
+                    <Icon glyph=Glyph::File/>
+                    "Open file"
+                    <input
+                        type="file"
+                        class="hidden-input"
+                        data-testid="file"
+                        node_ref=file
+                        on:change=on_file
+                    />
+                </label>
             </div>
-            <div class="input-row choices">
-                <FramingChoice/>
-                <DeviceChoice/>
-                <Found/>
-                <SampleChoice/>
-            </div>
+            <Drawn class="input-row choices" draw=tools on_act=on_act/>
         </section>
     }
 }
@@ -154,161 +146,17 @@ fn paste(store: DecodeStore, text: &str) {
     store.open_text(text);
 }
 
-#[component]
-fn FramingChoice() -> impl IntoView {
-    let store: DecodeStore = expect_context();
-    let found = move || {
-        store
-            .work
-            .with(|w| w.as_ref().map_or("", |w| w.session.framing().label()))
-    };
-    let auto = move || match (store.framing.get(), found()) {
-        (None, found) if !found.is_empty() => format!("Automatic: {found}"),
-        _ => "Automatic".to_owned(),
-    };
-    let on_change = move |event: web_sys::Event| {
-        store.choose_framing(Framing::from_key(&value_of(&event)));
-    };
-    view! {
-        <label class="choice">
-            <span>"Framing"</span>
-            <select
-                data-testid="decode-framing"
-                prop:value=move || store.framing.get().map_or("", Framing::key)
-                on:change=on_change
-            >
-                <option value="">{auto}</option>
-                {Framing::ALL
-                    .map(|f| {
-                        view! {
-                            <option
-                                value=f.key()
-                                selected=move || store.framing.get() == Some(f)
-                            >
-                                {f.label()}
-                            </option>
-                        }
-                    })}
-            </select>
-        </label>
-    }
-}
-
-#[component]
-fn DeviceChoice() -> impl IntoView {
-    let store: DecodeStore = expect_context();
-    let guess = Memo::new(move |_| store.work.with(|w| w.as_ref().map(|w| w.guess.clone())));
-    let auto = move || match (store.device.get(), guess.get()) {
-        (None, Some(guess)) => format!("Automatic: {}", guess.device.label()),
-        _ => "Automatic".to_owned(),
-    };
-    let reason = move || match (store.device.get(), guess.get()) {
-        (None, Some(guess)) => guess.reason,
-        _ => String::new(),
-    };
-    let on_change = move |event: web_sys::Event| {
-        store.choose_device(Device::from_key(&value_of(&event)));
-    };
-    view! {
-        <label class="choice" title=reason>
-            <span>"Device"</span>
-            <select
-                data-testid="decode-device"
-                prop:value=move || store.device.get().map_or("", Device::key)
-                on:change=on_change
-            >
-                <option value="">{auto}</option>
-                {Device::ALL
-                    .map(|d| {
-                        view! {
-                            <option value=d.key() selected=move || store.device.get() == Some(d)>
-                                {d.label()}
-                            </option>
-                        }
-                    })}
-            </select>
-        </label>
-    }
-}
-
-/// What was found, or how far reading is.
-#[component]
-fn Found() -> impl IntoView {
-    let store: DecodeStore = expect_context();
-    let words = move || {
-        store.work.with(|w| {
-            w.as_ref().map(|w| {
-                let stopped = if w.partial {
-                    ", reading was stopped"
-                } else {
-                    ""
-                };
-                format!(
-                    "{}: {}, {}, {}{stopped}",
-                    w.name,
-                    form_label(w.form),
-                    size(w.session.end()),
-                    count(u64::from(w.session.len()), "frame")
-                )
-            })
-        })
-    };
-    let progress = move || {
-        store.progress.get().map(|p| {
-            let percent = format!("{:.0} %", p.done * 100.0);
-            let frames =
-                (p.frames > 0).then(|| format!(", {} frames", thousands(u64::from(p.frames))));
-            view! {
-                <span class="progress" role="status">
-                    <progress max="1" prop:value=p.done></progress>
-                    {p.what} " " {percent} {frames}
-                    <button
-                        class="button"
-                        data-testid="cancel"
-                        on:click=move |_| store.cancel()
-                    >
-                        "Cancel"
-                    </button>
-                </span>
-            }
-        })
-    };
-    view! {
-        <span class="found" data-testid="found" aria-live="polite">
-            {words}
-        </span>
-        {progress}
-    }
-}
-
-#[component]
-fn SampleChoice() -> impl IntoView {
-    let store: DecodeStore = expect_context();
-    let on_change = move |event: web_sys::Event| {
-        if let Some(sample) = crate::state::samples::by_key(&value_of(&event)) {
-            store.open_sample(sample);
-        }
-    };
-    view! {
-        <label class="choice samples">
-            <span>"Sample"</span>
-            <select
-                data-testid="sample"
-                prop:value=move || store.sample.get().unwrap_or_default()
-                on:change=on_change
-            >
-                <option value="">"Choose"</option>
-                {SAMPLES
-                    .iter()
-                    .map(|s| {
-                        view! {
-                            <option value=s.key selected=move || store.sample.get() == Some(s.key)>
-                                {s.title}
-                            </option>
-                        }
-                    })
-                    .collect::<Vec<_>>()}
-            </select>
-        </label>
-    }
+/// Framing, device, what was found, samples.
+fn draw_choices(store: DecodeStore, html: &mut Markup) {
+    let (framing, device) = (store.framing.get(), store.device.get());
+    store.work.with(|work| {
+        let now = Choices {
+            framing,
+            device,
+            sample: store.sample.get(),
+            work: work.as_ref(),
+            progress: store.progress.get(),
+        };
+        decode::choices(html, &now);
+    });
 }

@@ -1,6 +1,7 @@
 //! Each component shows one thing.
 
 pub mod conn;
+pub mod drawn;
 pub mod frame_detail;
 pub mod help;
 pub mod icon;

@@ -8,10 +8,12 @@ use shared::place::Place;
 use shared::problem::Problem;
 use shared::text::TextProblem;
 
+use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::windowed::{DrawRow, Windowed};
 use crate::decode_store::DecodeStore;
-use crate::format::count;
+use crate::erased::{effect, memo};
 use crate::markup::Markup;
+use crate::markup::decode::problem_head;
 use crate::markup::frame::{place_words, problem_row};
 use crate::state::findings::Item;
 use crate::state::selection::Selection;
@@ -35,7 +37,7 @@ enum Entry {
 pub fn ProblemStrip() -> impl IntoView {
     let store: DecodeStore = expect_context();
     let (with_notes, set_with_notes) = signal(false);
-    let entries = Memo::new(move |_| {
+    let entries = memo(move || {
         let text = store.work.with(|w| {
             w.as_ref()
                 .map_or_else(Vec::new, |w| w.text_problems.clone())
@@ -49,7 +51,7 @@ pub fn ProblemStrip() -> impl IntoView {
         });
         Arc::new(entries)
     });
-    let total = Memo::new(move |_| {
+    let total = memo(move || {
         let text = store.work.with(|w| {
             w.as_ref()
                 .map_or(0, |w| w.text_problems.len() + w.more_text_problems)
@@ -59,7 +61,7 @@ pub fn ProblemStrip() -> impl IntoView {
         (errors + text, warnings, notes)
     });
     let cursor = RwSignal::new(None);
-    Effect::new(move |_| {
+    effect(move || {
         let entry = cursor
             .get()
             .and_then(|at| entries.with_untracked(|e| e.get(at).copied()));
@@ -72,69 +74,30 @@ pub fn ProblemStrip() -> impl IntoView {
             draw_entry(html, entry);
         }
     });
-    let draw = StoredValue::new(draw);
-    let shown = move || entries.with(|e| e.len().min(ROWS));
-    let words = move || {
-        let (errors, warnings, _) = total.get();
-        format!("{}, {}", count(errors, "error"), count(warnings, "warning"))
-    };
-    let left_out = move || {
-        let (errors, warnings, _) = total.get();
+    let shown = move || i32::try_from(entries.with(|e| e.len().min(ROWS))).unwrap_or(0);
+    let head: Draw = Arc::new(move |html: &mut Markup| {
         let listed = entries.with(|e| u64::try_from(e.len()).unwrap_or(u64::MAX));
-        let all = errors + warnings;
-        (all > listed).then(|| {
-            format!(
-                ", the first {} are listed",
-                crate::format::thousands(listed)
-            )
-        })
-    };
-    let notes = move || {
-        let (.., notes) = total.get();
-        (notes > 0).then(|| {
-            view! {
-                <label class="check">
-                    <input
-                        type="checkbox"
-                        prop:checked=with_notes
-                        on:change=move |e| set_with_notes.set(event_target_checked(&e))
-                    />
-                    {count(notes, "note")}
-                </label>
-            }
-        })
-    };
-    let any = move || total.get() != (0, 0, 0);
-    let listed = Memo::new(move |_| shown() > 0);
+        problem_head(html, total.get(), listed, with_notes.get());
+    });
+    let on_act = Callback::new(move |act: Act| set_with_notes.set(!act.value.is_empty()));
     view! {
-        <Show when=any>
-            <section class="problem-strip" aria-label="Problems">
-                <header>
-                    <span role="status" data-testid="problem-count">
-                        {words} {left_out}
-                    </span>
-                    {notes}
-                </header>
-                <Show when=move || listed.get()>
-                    <div
-                        class="problem-list"
-                        style:height=move || {
-                            let rows = i32::try_from(shown()).unwrap_or(0);
-                            format!("{}px", rows * ROW)
-                        }
-                    >
-                        <Windowed
-                            label="Problems"
-                            count=Signal::derive(move || entries.with(|e| e.len()))
-                            row_height=Signal::stored(ROW)
-                            cursor=cursor
-                            draw=draw.get_value()
-                            testid="problem-list"
-                        />
-                    </div>
-                </Show>
-            </section>
-        </Show>
+        <section
+            class="problem-strip"
+            aria-label="Problems"
+            hidden=move || total.get() == (0, 0, 0)
+        >
+            <Drawn class="problem-head" draw=head on_act=on_act/>
+            <div class="problem-list" style:height=move || format!("{}px", shown() * ROW)>
+                <Windowed
+                    label="Problems"
+                    count=Signal::derive(move || entries.with(|e| e.len()))
+                    row_height=Signal::stored(ROW)
+                    cursor=cursor
+                    draw=draw
+                    testid="problem-list"
+                />
+            </div>
+        </section>
     }
 }
 

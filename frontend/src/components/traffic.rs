@@ -7,19 +7,21 @@ use shared::capture::Micros;
 use shared::decode::Context;
 use shared::device::Device;
 use shared::frame::Role;
-use shared::pdu::names;
+use shared::proto::LineState;
 use shared::session::Session;
 use shared::tree::Decoded;
 
-use crate::browser::{Narrow, offset_minutes, save, value_of};
+use crate::browser::{Narrow, offset_minutes, save};
+use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::frame_detail::{FrameDetail, Selected};
-use crate::components::icon::{Glyph, Icon};
 use crate::components::windowed::{DrawRow, Windowed};
-use crate::format::{clock, count, millis};
+use crate::erased::{effect, memo};
+use crate::format::{clock, millis};
 use crate::keys::on_action;
 use crate::live::Live;
 use crate::markup::Markup;
 use crate::markup::frame::{Beside, head, row};
+use crate::markup::toolbar;
 use crate::state::shortcuts::Action;
 use crate::state::summary::summary;
 use crate::state::traffic::{Filter, export, listed};
@@ -59,7 +61,7 @@ pub fn TrafficView(
             }),
         });
     };
-    let frames = Memo::new(move |_| {
+    let frames = memo(move || {
         let mut found = Vec::new();
         filter.with(|filter| with(&mut |session| found = listed(session, filter)));
         Arc::new(found)
@@ -103,20 +105,20 @@ pub fn TrafficView(
     });
 
     // The cursor stays on its frame when older ones are forgotten or the filter changes.
-    Effect::new(move |_| {
+    effect(move || {
         let at = cursor.get();
         let frame = at.and_then(|at| frames.with_untracked(|f| f.get(at).copied()));
         if at.is_some() && chosen.get_untracked() != frame {
             chosen.set(frame);
         }
     });
-    Effect::new(move |_| {
+    effect(move || {
         let at = frames.with(|f| f.binary_search(&chosen.get_untracked()?).ok());
         if cursor.get_untracked() != at {
             cursor.set(at);
         }
     });
-    let shown = Memo::new(move |_| {
+    let shown = memo(move || {
         let index = chosen.get()?;
         let mut shown = None;
         with(&mut |session| {
@@ -165,68 +167,50 @@ pub fn TrafficView(
         _ => {}
     });
 
-    let pause = move |_| {
-        if frozen.with_untracked(Option::is_some) {
-            frozen.set(None);
-        } else {
+    let on_act = Callback::new(move |act: Act| match act.name.as_str() {
+        "pause" => {
             let mut copy = None;
-            untrack(|| with(&mut |session| copy = Some(session.clone())));
+            if frozen.with_untracked(Option::is_none) {
+                untrack(|| with(&mut |session| copy = Some(session.clone())));
+            }
             frozen.set(copy);
         }
-    };
-    let clear = move |_| {
-        let mut end = 0;
-        untrack(|| with(&mut |session| end = session.len()));
-        filter.update(|f| f.from = end);
-    };
-    let save_all = move |_| {
-        let mut text = String::new();
-        untrack(|| with(&mut |session| text = frames.with(|f| export(session, f))));
-        save(&format!("{}.hex", bus.get_value()), &text);
-    };
-    let is_paused = move || frozen.with(Option::is_some);
-    let missed = move || {
-        let missed = live
-            .plant
-            .with(|p| bus.with_value(|b| p.bus(b)).map_or(0, |b| b.missed));
-        (missed > 0).then(|| format!("{} did not reach this page.", count(missed, "capture")))
-    };
-    let line = move || {
-        live.plant.with(|p| {
-            bus.with_value(|b| p.bus(b))
-                .map_or_else(String::new, |b| match b.line {
-                    shared::proto::LineState::Up => b.info.line.clone(),
+        "clear" => {
+            let mut end = 0;
+            untrack(|| with(&mut |session| end = session.len()));
+            filter.update(|f| f.from = end);
+        }
+        "save" => {
+            let mut text = String::new();
+            let listed = frames.get_untracked();
+            untrack(|| with(&mut |session| text = export(session, &listed)));
+            save(&format!("{}.hex", bus.get_value()), &text);
+        }
+        name => filter.update(|f| match name {
+            "unit" => f.unit = act.value.trim().parse().ok(),
+            "function" => f.function = act.value.parse().ok(),
+            _ => f.problems = !act.value.is_empty(),
+        }),
+    });
+    let tools: Draw = Arc::new(move |html: &mut Markup| {
+        let now = live.plant.with(|p| {
+            let bus = bus.with_value(|b| p.bus(b));
+            toolbar::Traffic {
+                paused: frozen.with(Option::is_some),
+                frames: frames.with(|f| f.len()),
+                missed: bus.map_or(0, |b| b.missed),
+                line: bus.map_or_else(String::new, |b| match b.line {
+                    LineState::Up => b.info.line.clone(),
                     _ => format!("{}: {}", b.info.line, b.line_text),
-                })
-        })
-    };
+                }),
+                fixed_unit: only.is_some(),
+            }
+        });
+        filter.with(|f| toolbar::traffic(html, &now, f));
+    });
     view! {
         <div class="traffic" class:show-detail=move || narrow.get() && in_detail.get()>
-            <div class="toolbar">
-                <button
-                    class="button"
-                    data-testid="pause"
-                    aria-pressed=move || is_paused().to_string()
-                    on:click=pause
-                >
-                    {move || if is_paused() { "Go on" } else { "Pause" }}
-                </button>
-                <button class="button" data-testid="clear-traffic" on:click=clear>
-                    "Clear"
-                </button>
-                <FilterFields filter=filter only=only/>
-                <button class="button" data-testid="export" on:click=save_all>
-                    <Icon glyph=Glyph::Save/>
-                    "Save as hex"
-                </button>
-                <span class="quiet" data-testid="traffic-count">
-                    {move || count(u64::try_from(frames.with(|f| f.len())).unwrap_or(0), "frame")}
-                </span>
-                <span class="quiet line-words">{line}</span>
-                <span class="missed" role="status" data-testid="missed">
-                    {missed}
-                </span>
-            </div>
+            <Drawn class="toolbar" draw=tools on_act=on_act/>
             <div class="panes">
                 <section class="pane list-pane" aria-label="Frames">
                     <div
@@ -247,8 +231,7 @@ pub fn TrafficView(
                 </section>
                 <section class="pane detail-pane" aria-label="Frame">
                     <button class="button back" on:click=move |_| set_in_detail.set(false)>
-                        <Icon glyph=Glyph::Left/>
-                        "Frames"
+                        "Back to the frames"
                     </button>
                     <FrameDetail
                         shown=shown
@@ -259,62 +242,6 @@ pub fn TrafficView(
                 </section>
             </div>
         </div>
-    }
-}
-
-/// Unit, function and problems.
-#[component]
-fn FilterFields(
-    /// The filter that they set.
-    filter: RwSignal<Filter>,
-    /// The unit is fixed.
-    only: Option<u8>,
-) -> impl IntoView {
-    let functions = [1_u8, 2, 3, 4, 5, 6, 8, 15, 16, 17, 20]
-        .map(|code| {
-            let name = names::function(code).unwrap_or_default();
-            view! { <option value=code.to_string()>{format!("{code:02} {name}")}</option> }
-                .into_any()
-        })
-        .into_iter()
-        .collect::<Vec<_>>();
-    view! {
-        <input
-            type="search"
-            class="unit-field"
-            inputmode="numeric"
-            placeholder="Unit"
-            aria-label="Only this unit"
-            data-find
-            data-testid="filter-unit"
-            hidden=only.is_some()
-            on:input=move |e| {
-                let unit = value_of(&e).trim().parse().ok();
-                filter.update(|f| f.unit = unit);
-            }
-        />
-        <select
-            aria-label="Only this function"
-            data-testid="filter-function"
-            on:change=move |e| {
-                let function = value_of(&e).parse().ok();
-                filter.update(|f| f.function = function);
-            }
-        >
-            <option value="">"Function"</option>
-            {functions}
-        </select>
-        <label class="check">
-            <input
-                type="checkbox"
-                data-testid="filter-problems"
-                on:change=move |e| {
-                    let problems = event_target_checked(&e);
-                    filter.update(|f| f.problems = problems);
-                }
-            />
-            "Problems only"
-        </label>
     }
 }
 

@@ -9,6 +9,8 @@ use leptos::html::Div;
 use leptos::prelude::*;
 use wasm_bindgen::prelude::*;
 
+use crate::components::drawn::morph_into;
+use crate::erased::effect;
 use crate::markup::Markup;
 use crate::state::window::{Slice, Window, moved};
 
@@ -78,7 +80,7 @@ pub fn Windowed(
     };
 
     let slots = RefCell::new(VecDeque::<Slot>::new());
-    Effect::new(move |_| {
+    effect(move || {
         let Some(rows) = rows.get() else { return };
         let slice = window().at(f64::from(scroll.get()));
         place(&rows, &slice);
@@ -94,7 +96,7 @@ pub fn Windowed(
     });
 
     // The cursor is always in view.
-    Effect::new(move |_| {
+    effect(move || {
         if let Some(at) = cursor.get() {
             let now = f64::from(scroll.get_untracked());
             let wanted = untrack(window).reveal(at, now);
@@ -104,13 +106,13 @@ pub fn Windowed(
             }
         }
     });
-    Effect::new(move |_| {
+    effect(move || {
         let window = window();
         if follow && at_end.get_value() && cursor.with_untracked(Option::is_none) {
             request_animation_frame(move || scroll_to(window.spacer()));
         }
     });
-    Effect::new(move |_| {
+    effect(move || {
         if let Some(in_view) = in_view {
             let now = window().visible(f64::from(scroll.get()));
             if in_view.with_untracked(|before| *before != now) {
@@ -233,9 +235,7 @@ fn fill(
             set(&slot.element, "aria-selected", selected);
         }
         if slot.html != html {
-            if slot.at != at || !patch(&slot.element, &html) {
-                slot.element.set_inner_html(&html);
-            }
+            morph_into(&slot.element, &html);
             slot.html = html;
         }
         slot.at = at;
@@ -266,38 +266,6 @@ fn rotate(rows: &web_sys::Element, slots: &mut VecDeque<Slot>, start: usize) {
             }
         }
     }
-}
-
-/// Replaces only the cells that changed, so that a button under the finger stays where it is.
-/// False if the row is another one altogether.
-fn patch(slot: &web_sys::Element, html: &str) -> bool {
-    let Ok(fresh) = document().create_element("div") else {
-        return false;
-    };
-    fresh.set_inner_html(html);
-    let (Some(old), Some(new)) = (slot.first_element_child(), fresh.first_element_child()) else {
-        return false;
-    };
-    let (cells, next) = (old.children(), new.children());
-    // The tag with its attributes says which row it is.
-    let tag = |row: &web_sys::Element| {
-        let html = row.outer_html();
-        html.split_once('>').map(|(tag, _)| tag.to_owned())
-    };
-    if tag(&old) != tag(&new) || cells.length() != next.length() {
-        return false;
-    }
-    // Backwards, because a cell leaves the new row when it is put into the old one.
-    for at in (0..cells.length()).rev() {
-        let (Some(cell), Some(fresh)) = (cells.item(at), next.item(at)) else {
-            return false;
-        };
-        if cell.outer_html() != fresh.outer_html() && cell.replace_with_with_node_1(&fresh).is_err()
-        {
-            return false;
-        }
-    }
-    true
 }
 
 fn new_row(rows: &web_sys::Element) -> Option<web_sys::Element> {

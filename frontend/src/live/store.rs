@@ -9,6 +9,7 @@ use shared::proto::{Block, ToBackend};
 
 use super::backoff::wait_ms;
 use super::socket::{Event, Socket};
+use crate::erased::{effect, memo};
 use crate::router::Router;
 use crate::state::overview;
 use crate::state::plant::Plant;
@@ -236,7 +237,7 @@ impl Live {
     /// Watches what the screen shows, and nothing while it shows nothing live.
     fn follow_screen(self) {
         let router = Router::get();
-        let devices = Memo::new(move |_| {
+        let devices = memo(move || {
             self.plant.with(|plant| {
                 let devices = plant.devices.iter();
                 devices
@@ -244,11 +245,11 @@ impl Live {
                     .collect::<Vec<_>>()
             })
         });
-        let screen = Memo::new(move |_| {
+        let screen = memo(move || {
             let route = router.route();
             (route.is_live(), route.screen)
         });
-        Effect::new(move |_| {
+        effect(move || {
             let up = self.conn.get().is_up();
             let (is_live, screen) = screen.get();
             let polled = self.polled.get();

@@ -8,6 +8,7 @@ use crate::format::age;
 use crate::state::health::{Health, outcome};
 use crate::state::overview::{Active, Figure, Overview, Travel};
 use crate::state::plant::DeviceState;
+use crate::state::route::{Route, Screen, Tab};
 
 /// Draws a sign of NE 107.
 pub fn sign(html: &mut Markup, sign: Sign, size: &str) {
@@ -160,10 +161,8 @@ fn alarm_words(overview: &Overview) -> String {
 }
 
 /// Tag, model, position, state and mode of a device.
-#[must_use]
-pub fn header(device: &DeviceState, overview: &Overview, now: u64, up: bool) -> String {
+pub fn header(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u64, up: bool) {
     let health = Health::of(device.outcome, overview);
-    let mut html = Markup::new();
     html.node("h1", "", &device.info.tag);
     html.open("p", &[("class", "quiet device-place")]);
     html.text(&format!(
@@ -177,7 +176,7 @@ pub fn header(device: &DeviceState, overview: &Overview, now: u64, up: bool) -> 
     }
     html.close("p").open("p", &[("class", "device-now")]);
     if let Some(mark) = health_sign(health) {
-        sign(&mut html, mark, "20");
+        sign(html, mark, "20");
     }
     if let Some(position) = &overview.position {
         html.node("b", "", &format!("{} {}", position.text, position.unit));
@@ -207,13 +206,28 @@ pub fn header(device: &DeviceState, overview: &Overview, now: u64, up: bool) -> 
             html.node("p", "quiet device-why", &device.text);
         }
     }
-    html.finish()
+}
+
+/// The tabs of a device.
+pub fn tabs(html: &mut Markup, tag: &str, now: Tab) {
+    for tab in Tab::ALL {
+        let screen = Screen::Device(tag.to_owned(), tab);
+        html.open(
+            "a",
+            &[
+                ("class", "tab"),
+                ("role", "tab"),
+                ("href", &Route::to(screen).to_string()),
+                ("data-testid", &format!("tab-{}", tab.key())),
+                ("aria-selected", if tab == now { "true" } else { "false" }),
+            ],
+        );
+        html.text(tab.label()).close("a");
+    }
 }
 
 /// The figures of the overview: position, torque, mode and facts.
-#[must_use]
-pub fn figures(overview: &Overview) -> String {
-    let mut html = Markup::new();
+pub fn figures(html: &mut Markup, overview: &Overview) {
     html.open("p", &[("class", "big"), ("data-testid", "position")]);
     match &overview.position {
         Some(position) => {
@@ -229,16 +243,15 @@ pub fn figures(overview: &Overview) -> String {
     html.open("p", &[("class", "big-state")]);
     html.text(&overview.state).close("p");
     html.node("h3", "", "Torque");
-    torque(&mut html, overview);
+    torque(html, overview);
     html.open("dl", &[("class", "fact-list")]);
     if !overview.mode.is_empty() {
-        super::facts::fact(&mut html, "Selector", overview.mode);
+        super::facts::fact(html, "Selector", overview.mode);
     }
     for (label, text) in &overview.facts {
-        super::facts::fact(&mut html, label, text);
+        super::facts::fact(html, label, text);
     }
     html.close("dl");
-    html.finish()
 }
 
 /// Torque as a bar from the middle, with its limits.
@@ -263,7 +276,7 @@ fn torque(html: &mut Markup, overview: &Overview) {
         "svg",
         &[
             ("class", "torque"),
-            ("viewBox", "-104 0 208 40"),
+            ("viewBox", "-104 -8 208 48"),
             ("role", "img"),
             ("aria-label", "Torque against its limits"),
         ],
@@ -308,9 +321,7 @@ fn label(html: &mut Markup, class: &str, x: i32, y: i32, text: &str) {
 }
 
 /// The valve, drawn simply: the gate in its bore, the stem above it, the travel and its limits.
-#[must_use]
-pub fn valve(overview: &Overview) -> String {
-    let mut html = Markup::new();
+pub fn valve(html: &mut Markup, overview: &Overview) {
     let position = overview.position.as_ref().map(percent);
     let words = match position {
         Some(p) => format!("Valve {p} % open, {}", overview.state),
@@ -334,29 +345,23 @@ pub fn valve(overview: &Overview) -> String {
         html.open("path", &[("class", "body"), ("d", d)])
             .close("path");
     }
-    rect(&mut html, "actuator", (88, 58, 84, 42));
+    rect(html, "actuator", (88, 58, 84, 42));
     // A stem of 84 above a gate of 90 that travels 90.
     let gate = 206 - position.unwrap_or(0).clamp(0, 100) * 9 / 10;
     if position.is_some() {
-        line(&mut html, "stem", (130, gate), (130, gate - 84));
-        rect(&mut html, "gate", (104, gate, 52, 90));
+        line(html, "stem", (130, gate), (130, gate - 84));
+        rect(html, "gate", (104, gate, 52, 90));
         let pointer = format!("M172 {gate}l10 -5v10z");
         html.open("path", &[("class", "pointer"), ("d", &pointer)])
             .close("path");
     }
     // The scale: 0 where the gate is closed, 100 where it is open.
-    line(&mut html, "axis", (188, 116), (188, 206));
+    line(html, "axis", (188, 116), (188, 206));
     for percent in [0, 25, 50, 75, 100] {
         let y = 206 - percent * 9 / 10;
-        line(&mut html, "axis", (188, y), (193, y));
+        line(html, "axis", (188, y), (193, y));
         if percent % 50 == 0 {
-            label(
-                &mut html,
-                "scale-text start",
-                197,
-                y + 4,
-                &percent.to_string(),
-            );
+            label(html, "scale-text start", 197, y + 4, &percent.to_string());
         }
     }
     for (is, y, text) in [
@@ -364,8 +369,8 @@ pub fn valve(overview: &Overview) -> String {
         (overview.close_limit, 206, "close limit"),
     ] {
         if is {
-            line(&mut html, "reached", (182, y), (194, y));
-            label(&mut html, "limit-text start", 197, y - 9, text);
+            line(html, "reached", (182, y), (194, y));
+            label(html, "limit-text start", 197, y - 9, text);
         }
     }
     let arrow = match overview.travel {
@@ -381,29 +386,20 @@ pub fn valve(overview: &Overview) -> String {
         } else {
             "closing"
         };
-        label(&mut html, "scale-text", 62, 172, word);
+        label(html, "scale-text", 62, 172, word);
     }
     html.close("svg");
-    html.finish()
 }
 
 /// The alarms, warnings and status bits that are set.
-#[must_use]
-pub fn conditions(overview: &Overview) -> String {
-    let mut html = Markup::new();
+pub fn conditions(html: &mut Markup, overview: &Overview) {
     if !overview.known {
         html.node("p", "quiet", "The status was not read yet.");
-        return html.finish();
+        return;
     }
-    list(&mut html, "Alarms", &overview.alarms, Some(Sign::Failure));
-    list(
-        &mut html,
-        "Warnings",
-        &overview.warnings,
-        Some(Sign::Warning),
-    );
-    list(&mut html, "Status", &overview.status, None);
-    html.finish()
+    list(html, "Alarms", &overview.alarms, Some(Sign::Failure));
+    list(html, "Warnings", &overview.warnings, Some(Sign::Warning));
+    list(html, "Status", &overview.status, None);
 }
 
 fn list(html: &mut Markup, title: &str, bits: &[Active], mark: Option<Sign>) {
@@ -448,19 +444,35 @@ mod tests {
         }
     }
 
+    fn drawn(draw: fn(&mut Markup, &Overview), overview: &Overview) -> String {
+        let mut html = Markup::new();
+        draw(&mut html, overview);
+        html.finish()
+    }
+
     #[test]
     fn the_valve_is_a_picture_of_the_data() {
-        let html = valve(&overview());
+        let html = drawn(valve, &overview());
         assert!(html.contains("45 % open"));
         assert!(html.contains("opening"));
         assert!(!html.contains("style="));
-        assert!(valve(&Overview::default()).contains("not read yet"));
+        assert!(drawn(valve, &Overview::default()).contains("not read yet"));
     }
 
     #[test]
     fn figures_and_conditions() {
-        assert!(figures(&overview()).contains("data-testid=\"position\">45.2"));
-        assert!(conditions(&overview()).contains("none"));
-        assert!(conditions(&Overview::default()).contains("not read yet"));
+        let figures = drawn(figures, &overview());
+        assert!(figures.contains("data-testid=\"position\">45.2"));
+        assert!(drawn(conditions, &overview()).contains("none"));
+        assert!(drawn(conditions, &Overview::default()).contains("not read yet"));
+    }
+
+    #[test]
+    fn tabs_lead_to_their_addresses() {
+        let mut html = Markup::new();
+        tabs(&mut html, "XV 1", Tab::Values);
+        let html = html.finish();
+        assert!(html.contains("href=\"#/device/XV%201/overview\""));
+        assert_eq!(html.matches("aria-selected=\"true\"").count(), 1);
     }
 }

@@ -4,10 +4,14 @@
 //! drawing time; these functions are pure, tested natively, and draw a screen of rows at once. All
 //! text is escaped; there are no `style` attributes, which the server's policy forbids.
 
+pub mod about;
+pub mod control;
+pub mod decode;
 pub mod device;
 pub mod facts;
 pub mod frame;
 pub mod hex;
+pub mod toolbar;
 pub mod tree;
 pub mod values;
 

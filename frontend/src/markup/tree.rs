@@ -1,7 +1,5 @@
 //! The fields of a frame.
 
-use std::collections::BTreeSet;
-
 use shared::map::row::Trust;
 use shared::tree::Decoded;
 use shared::value::{ACTIVE, Quality};
@@ -12,7 +10,7 @@ use crate::state::tree::{Facts, Line, lines};
 
 /// The field tree; `toggled` are the fields that the user opened or closed.
 #[must_use]
-pub fn tree(decoded: &Decoded, toggled: &BTreeSet<u32>) -> String {
+pub fn tree(decoded: &Decoded, toggled: &[u32]) -> String {
     let mut html = Markup::new();
     for line in lines(decoded, toggled) {
         if let Some(facts) = Facts::of(decoded, line.id) {
@@ -87,7 +85,7 @@ mod tests {
     fn every_field_has_its_path() {
         let loaded = load(b"7D0300070003BFF6", None);
         let shown = Shown::of(&loaded.session, 0, Device::None).unwrap();
-        let html = tree(&shown.decoded, &BTreeSet::new());
+        let html = tree(&shown.decoded, &[]);
         for path in ["unit", "function", "crc"] {
             assert!(html.contains(&format!("data-path=\"{path}\"")), "{html}");
         }

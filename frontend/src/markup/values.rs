@@ -4,6 +4,7 @@ use shared::map::row::{DeviceMap, Kind, Row, Trust};
 use shared::value::Quality;
 
 use super::Markup;
+use super::control::Button;
 use super::facts::{fact, reading, trust};
 use crate::components::icon::Glyph;
 use crate::format::age;
@@ -28,6 +29,30 @@ pub struct Around {
 
 /// How long a change stays marked, in microseconds.
 const FADE: u64 = 600_000;
+
+/// Names of the columns.
+pub fn head(html: &mut Markup, raw: RawForm) {
+    for (class, text) in [
+        ("", ""),
+        ("num", "Address"),
+        ("num", "Number"),
+        ("", "Name"),
+        ("right", "Value"),
+        ("", "Unit"),
+        ("", "Age, quality"),
+    ] {
+        html.node("span", class, text);
+    }
+    html.open(
+        "button",
+        &[
+            ("class", "quiet-button"),
+            ("data-act", "raw"),
+            ("data-testid", "raw-form"),
+        ],
+    );
+    html.text("Raw, ").text(raw.key()).close("button");
+}
 
 /// One line of the register browser.
 pub fn row(html: &mut Markup, item: Item, cell: Option<&Cell>, around: &Around) {
@@ -154,11 +179,21 @@ fn quality(html: &mut Markup, row: &Row, cell: Option<&Cell>, around: &Around) {
 }
 
 /// Everything about a line of the register browser.
-#[must_use]
-pub fn detail(map: &DeviceMap, item: Item, cell: Option<&Cell>, parts: &[Facts]) -> String {
+pub fn detail(
+    html: &mut Markup,
+    map: &DeviceMap,
+    item: Item,
+    cell: Option<&Cell>,
+    parts: &[Facts],
+) {
     let row = item.row();
     let (address, number) = addresses(row);
-    let mut html = Markup::new();
+    Button {
+        act: "close",
+        words: "Close",
+        ..Button::default()
+    }
+    .draw(html);
     html.node("h3", "", row.label);
     html.open("p", &[("class", "detail-value")]);
     html.node("b", "", cell.map_or("not read yet", |c| &c.text));
@@ -166,55 +201,50 @@ pub fn detail(map: &DeviceMap, item: Item, cell: Option<&Cell>, parts: &[Facts])
     html.close("p").open("dl", &[]);
     if let Item::Bit(_, member) = item {
         fact(
-            &mut html,
+            html,
             "Bit",
             &format!("{} · {} · {}", member.value, member.label, member.key),
         );
     }
-    fact(&mut html, "Table", row.table.label());
-    fact(
-        &mut html,
-        "Address",
-        &format!("{address} · number {number}"),
-    );
+    fact(html, "Table", row.table.label());
+    fact(html, "Address", &format!("{address} · number {number}"));
     if let Some(cell) = cell {
-        raw_words(&mut html, row, cell);
-        fact(&mut html, "Quality", cell.quality.label());
+        raw_words(html, row, cell);
+        fact(html, "Quality", cell.quality.label());
     }
     let words = match row.words {
         1 => String::new(),
         n => format!(", {n} words"),
     };
-    fact(&mut html, "Type", &format!("{}{words}", row.kind.key()));
+    fact(html, "Type", &format!("{}{words}", row.kind.key()));
     if !row.scale.is_one() || !row.unit.is_empty() {
-        fact(&mut html, "Scale", &format!("{} {}", row.scale, row.unit));
+        fact(html, "Scale", &format!("{} {}", row.scale, row.unit));
     }
     if let Some((min, max)) = row.range {
-        fact(&mut html, "Raw range", &format!("{min} to {max}"));
+        fact(html, "Raw range", &format!("{min} to {max}"));
     }
-    fact(&mut html, "Access", access(row.access));
+    fact(html, "Access", access(row.access));
     if let Some(level) = row.level {
-        fact(&mut html, "User level", level.key());
+        fact(html, "User level", level.key());
     }
-    fact(&mut html, "Group", row.group);
-    fact(&mut html, "Since", row.since.key());
-    fact(&mut html, "Key", row.key);
+    fact(html, "Group", row.group);
+    fact(html, "Since", row.since.key());
+    fact(html, "Key", row.key);
     fact(
-        &mut html,
+        html,
         "Source",
         &format!("{}, {}", row.source, trust(row.trust)),
     );
     if !row.note.is_empty() {
-        fact(&mut html, "Note", row.note);
+        fact(html, "Note", row.note);
     }
     let mentioned = mentioned(row.note).filter_map(|id| map.reading(id));
     for read in row.reading.into_iter().chain(mentioned) {
-        reading(&mut html, read);
+        reading(html, read);
     }
     html.close("dl");
-    members(&mut html, row, cell);
-    decoded_parts(&mut html, parts);
-    html.finish()
+    members(html, row, cell);
+    decoded_parts(html, parts);
 }
 
 /// The ids of readings that a note mentions: `E41`.
@@ -340,7 +370,9 @@ mod tests {
     #[test]
     fn the_detail_has_all_facts() {
         let map = Model::Icon3000v2.map();
-        let html = detail(map, position(), Some(&cell()), &[]);
+        let mut html = Markup::new();
+        detail(&mut html, map, position(), Some(&cell()), &[]);
+        let html = html.finish();
         for part in [
             "Holding register",
             "403005",

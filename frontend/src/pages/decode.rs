@@ -6,21 +6,26 @@ use leptos::prelude::*;
 use shared::tree::Decoded;
 
 use crate::browser::{Narrow, focus};
+use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::frame_detail::{FrameDetail, Selected};
-use crate::components::icon::{Glyph, Icon};
 use crate::components::input::DecodeInput;
 use crate::components::problems::ProblemStrip;
 use crate::components::windowed::{DrawRow, Windowed};
 use crate::decode_store::DecodeStore;
+use crate::erased::{effect, memo};
 use crate::format::thousands;
 use crate::keys::on_action;
-use crate::markup::Markup;
 use crate::markup::frame::{Beside, head, row};
+use crate::markup::{self, Markup};
 use crate::router::Router;
-use crate::state::samples::{SAMPLES, by_key};
+use crate::state::samples::by_key;
 use crate::state::shortcuts::Action;
 use crate::state::summary::summary;
 use crate::state::work::Shown;
+
+/// What to do with an input without bytes.
+const NOTHING: &str =
+    "No bytes in this. Write bytes as two hexadecimal digits, such as 01 03 00 00 00 02.";
 
 /// Bytes to meaning, without a network.
 #[component]
@@ -37,16 +42,16 @@ pub fn DecodePage() -> impl IntoView {
     {
         store.open_sample(sample);
     }
-    Effect::new(move |_| router.set("sample", store.sample.get().unwrap_or_default()));
+    effect(move || router.set("sample", store.sample.get().unwrap_or_default()));
 
-    let count = Memo::new(move |_| {
+    let count = memo(move || {
         store.epoch.track();
         store.work.with(|w| {
             w.as_ref()
                 .map_or(0, |w| usize::try_from(w.session.len()).unwrap_or(0))
         })
     });
-    let shown = Memo::new(move |_| {
+    let shown = memo(move || {
         let index = u32::try_from(store.cursor.get()?).ok()?;
         let device = store.device.get();
         store.work.with(|w| {
@@ -103,15 +108,27 @@ pub fn DecodePage() -> impl IntoView {
         _ => {}
     });
     // A jump from the strip opens the detail.
-    Effect::new(move |_| {
+    effect(move || {
         if store.selected.get().is_some() {
             set_in_detail.set(true);
         }
     });
 
-    let has_frames = move || count.get() > 0;
-    let nothing = move || store.work.with(Option::is_none) && store.progress.with(Option::is_none);
-    let empty = move || store.work.with(Option::is_some) && count.get() == 0;
+    let welcome: Draw = Arc::new(move |html: &mut Markup| {
+        if store.work.with(Option::is_some) {
+            if count.get() == 0 {
+                html.node("p", "empty", NOTHING);
+            }
+        } else if store.progress.with(Option::is_none) {
+            markup::decode::welcome(html);
+        }
+    });
+    let on_sample = Callback::new(move |act: Act| {
+        if let Some(sample) = by_key(&act.name) {
+            store.open_sample(sample);
+        }
+    });
+    let row_height = Signal::derive(move || if narrow.get() { 56 } else { 28 });
     view! {
         <div
             class="page decode"
@@ -121,71 +138,33 @@ pub fn DecodePage() -> impl IntoView {
             <h1 class="hidden-title">"Decode"</h1>
             <DecodeInput/>
             <ProblemStrip/>
-            <Show when=nothing>
-                <Welcome/>
-            </Show>
-            <Show when=empty>
-                <p class="empty">
-                    "No bytes in this. Write bytes as two hexadecimal digits, such as 01 03 00 00 00 02."
-                </p>
-            </Show>
-            <Show when=has_frames>
-                <div class="panes">
-                    <section class="pane list-pane" aria-label="Frames">
-                        <div class="frame-row frame-head" aria-hidden="true" inner_html=head("Offset", false)></div>
-                        <Windowed
-                            label="Frames"
-                            count=count
-                            row_height=Signal::derive(move || if narrow.get() { 56 } else { 28 })
-                            cursor=store.cursor
-                            draw=draw.clone()
-                            on_open=on_open
-                            testid="frame-list"
-                        />
-                    </section>
-                    <section class="pane detail-pane" aria-label="Frame">
-                        <button class="button back" on:click=move |_| set_in_detail.set(false)>
-                            <Icon glyph=Glyph::Left/>
-                            "Frames"
-                        </button>
-                        <FrameDetail shown=shown selected=Selected(store.selected) on_pair=go/>
-                    </section>
-                </div>
-            </Show>
-        </div>
-    }
-}
-
-/// What to do first.
-#[component]
-fn Welcome() -> impl IntoView {
-    let store: DecodeStore = expect_context();
-    view! {
-        <div class="welcome">
-            <p>
-                "Paste the bytes of a bus above, or drop a capture anywhere. Everything is decoded here; nothing leaves this page."
-            </p>
-            <h2>"Or try one"</h2>
-            <ul class="sample-list">
-                {SAMPLES
-                    .iter()
-                    .map(|sample| {
-                        view! {
-                            <li>
-                                <button
-                                    class="sample"
-                                    data-testid="sample-button"
-                                    data-sample=sample.key
-                                    on:click=move |_| store.open_sample(sample)
-                                >
-                                    <b>{sample.title}</b>
-                                    <span class="quiet">{sample.about}</span>
-                                </button>
-                            </li>
-                        }
-                    })
-                    .collect::<Vec<_>>()}
-            </ul>
+            <div class="welcome" hidden=move || { count.get() > 0 }>
+                <Drawn class="" draw=welcome on_act=on_sample/>
+            </div>
+            <div class="panes" hidden=move || count.get() == 0>
+                <section class="pane list-pane" aria-label="Frames">
+                    <div
+                        class="frame-row frame-head"
+                        aria-hidden="true"
+                        inner_html=head("Offset", false)
+                    ></div>
+                    <Windowed
+                        label="Frames"
+                        count=count
+                        row_height=row_height
+                        cursor=store.cursor
+                        draw=draw
+                        on_open=on_open
+                        testid="frame-list"
+                    />
+                </section>
+                <section class="pane detail-pane" aria-label="Frame">
+                    <button class="button back" on:click=move |_| set_in_detail.set(false)>
+                        "Back to the frames"
+                    </button>
+                    <FrameDetail shown=shown selected=Selected(store.selected) on_pair=go/>
+                </section>
+            </div>
         </div>
     }
 }

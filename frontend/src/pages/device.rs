@@ -1,17 +1,24 @@
 //! One device: what its valve does, all its values, its frames.
 
+use std::sync::Arc;
+
 use leptos::prelude::*;
 use shared::map::row::DeviceMap;
 
 use crate::components::conn::ConnNotice;
+use crate::components::drawn::{Draw, Drawn};
 use crate::components::traffic::TrafficView;
 use crate::components::values::ValuesView;
+use crate::erased::{effect, memo};
 use crate::live::Live;
-use crate::markup::device;
+use crate::markup::{Markup, device};
 use crate::router::Router;
 use crate::state::overview::{Overview, read_once};
 use crate::state::plant::DeviceState;
-use crate::state::route::{Route, Screen, Tab};
+use crate::state::route::{Screen, Tab};
+
+/// Draws a part from a device, its overview, the time, and whether there is a connection.
+type DrawDevice = fn(&mut Markup, &DeviceState, &Overview, u64, bool);
 
 /// A device, by its tag.
 #[component]
@@ -24,46 +31,33 @@ pub fn DevicePage(
     let live = Live::get();
     let tag = StoredValue::new(tag);
     // What seldom changes is read once, when the connection is there.
-    let kind = Memo::new(move |_| {
+    let kind = memo(move || {
         live.plant
             .with(|p| tag.with_value(|t| p.device(t).map(|d| d.device)))
     });
-    Effect::new(move |_| {
+    effect(move || {
         if let (true, Some(kind)) = (live.conn.get().is_up(), kind.get()) {
             live.read(&tag.get_value(), read_once(kind));
         }
     });
-    let draw = move |make: fn(&DeviceState, &Overview, u64, bool) -> String| {
-        let (now, up) = (live.now.get(), live.conn.get().is_up());
-        live.plant.with(|p| {
-            tag.with_value(|t| p.device(t))
-                .map_or_else(String::new, |d| {
-                    make(d, &Overview::of(d.device, &d.image), now, up)
-                })
+    let draw = move |make: DrawDevice| -> Draw {
+        Arc::new(move |html: &mut Markup| {
+            let (now, up) = (live.now.get(), live.conn.get().is_up());
+            live.plant.with(|p| {
+                if let Some(d) = tag.with_value(|t| p.device(t)) {
+                    make(html, d, &Overview::of(d.device, &d.image), now, up);
+                }
+            });
         })
     };
-    let missing = move || {
-        kind.with(Option::is_none)
-            .then(|| format!("There is no device {} here.", tag.get_value()))
-    };
-    let tabs = Tab::ALL
-        .map(|t| {
-            view! {
-                <a
-                    role="tab"
-                    class="tab"
-                    href=Route::to(Screen::Device(tag.get_value(), t)).to_string()
-                    data-testid=format!("tab-{}", t.key())
-                    aria-selected=move || (tab.get() == t).to_string()
-                >
-                    {t.label()}
-                </a>
-            }
-            .into_any()
-        })
-        .into_iter()
-        .collect::<Vec<_>>();
-    let body = move || match (kind.get(), tab.get()) {
+    let tabs: Draw = Arc::new(move |html: &mut Markup| {
+        if kind.with(Option::is_none) {
+            html.node("p", "empty", "There is no such device here.");
+        }
+        tag.with_value(|t| device::tabs(html, t, tab.get()));
+    });
+    let body = move || {
+        match (kind.get(), tab.get()) {
         (None, _) => ().into_any(),
         (Some(kind), Tab::Values) => match kind.map() {
             Some(map) => values(tag.get_value(), map),
@@ -81,39 +75,22 @@ pub fn DevicePage(
         }
         (Some(_), Tab::Overview) => view! {
             <div class="overview" data-testid="overview">
-                <section
-                    class="overview-valve"
-                    aria-label="Valve"
-                    inner_html=move || draw(|_, o, _, _| device::valve(o))
-                ></section>
-                <section
-                    class="overview-figures"
-                    aria-label="Figures"
-                    inner_html=move || draw(|_, o, _, _| device::figures(o))
-                ></section>
-                <section
+                <Drawn class="overview-valve" draw=draw(|html, _, o, _, _| device::valve(html, o))/>
+                <Drawn class="overview-figures" draw=draw(|html, _, o, _, _| device::figures(html, o))/>
+                <Drawn
                     class="overview-conditions"
-                    aria-label="Conditions"
-                    inner_html=move || draw(|_, o, _, _| device::conditions(o))
-                ></section>
+                    draw=draw(|html, _, o, _, _| device::conditions(html, o))
+                />
             </div>
         }
         .into_any(),
+    }
     };
     view! {
         <div class="page" data-testid="page-device">
             <ConnNotice/>
-            <p class="empty" hidden=move || missing().is_none()>
-                {missing}
-            </p>
-            <div
-                class="device-header"
-                data-testid="device-header"
-                inner_html=move || draw(device::header)
-            ></div>
-            <div class="tabs" role="tablist" aria-label="Device">
-                {tabs}
-            </div>
+            <Drawn class="device-header" draw=draw(device::header) testid="device-header"/>
+            <Drawn class="tabs" role="tablist" label="Device" draw=tabs/>
             {body}
         </div>
     }
@@ -127,7 +104,7 @@ fn values(tag: String, map: &'static DeviceMap) -> AnyView {
 #[component]
 pub fn DeviceRoute() -> impl IntoView {
     let screen = Router::get().screen();
-    let tag = Memo::new(move |_| match screen.get() {
+    let tag = memo(move || match screen.get() {
         Screen::Device(tag, _) => tag,
         _ => String::new(),
     });

@@ -7,6 +7,7 @@ use leptos::prelude::*;
 use crate::browser::Narrow;
 use crate::components::conn::ConnNotice;
 use crate::components::windowed::{DrawRow, Windowed};
+use crate::erased::memo;
 use crate::keys::on_action;
 use crate::live::Live;
 use crate::markup::{Markup, device};
@@ -24,19 +25,16 @@ pub fn DevicesPage() -> impl IntoView {
     let router = Router::get();
     let Narrow(narrow) = expect_context();
     let cursor = RwSignal::new(None);
-    let order = Memo::new(move |_| {
+    let order = memo(move || {
         live.plant.with(|plant| {
-            let mut order: Vec<_> = plant
-                .devices
-                .iter()
-                .enumerate()
-                .map(|(at, d)| {
-                    let health = Health::of(d.outcome, &Overview::of(d.device, &d.image));
-                    (core::cmp::Reverse(health), d.info.tag.clone(), at)
-                })
-                .collect();
-            order.sort();
-            order.into_iter().map(|(.., at)| at).collect::<Vec<_>>()
+            let mut order: Vec<(Health, usize)> = Vec::new();
+            for (at, d) in plant.devices.iter().enumerate() {
+                let health = Health::of(d.outcome, &Overview::of(d.device, &d.image));
+                // The worst first, equal ones as configured.
+                let place = order.partition_point(|(other, _)| *other >= health);
+                order.insert(place, (health, at));
+            }
+            order.into_iter().map(|(_, at)| at).collect::<Vec<_>>()
         })
     });
     let draw: DrawRow = Arc::new(move |at: usize, html: &mut Markup| {

@@ -5,6 +5,7 @@ use leptos::prelude::*;
 use crate::browser::value_of;
 use crate::components::conn::ConnNotice;
 use crate::components::traffic::TrafficView;
+use crate::erased::memo;
 use crate::live::Live;
 use crate::router::Router;
 use crate::state::route::{Route, Screen};
@@ -15,13 +16,13 @@ pub fn TrafficPage() -> impl IntoView {
     let live = Live::get();
     let router = Router::get();
     let screen = router.screen();
-    let buses = Memo::new(move |_| {
+    let buses = memo(move || {
         live.plant.with(|p| {
             let names = p.buses.iter().map(|b| b.info.name.clone());
             names.collect::<Vec<_>>()
         })
     });
-    let bus = Memo::new(move |_| match screen.get() {
+    let bus = memo(move || match screen.get() {
         Screen::Traffic(Some(bus)) => Some(bus),
         _ => buses.with(|b| b.first().cloned()),
     });

@@ -1,7 +1,5 @@
 //! What the backend has sent, decoded: buses with their frames, devices with their values.
 
-use std::collections::HashMap;
-
 use shared::capture::{Capture, Direction, Micros};
 use shared::decode::pdu_of;
 use shared::device::Device;
@@ -91,7 +89,7 @@ pub struct Plant {
     /// Microseconds of the backend and the page's milliseconds at the same moment.
     clock: Option<(u64, f64)>,
     next_id: u32,
-    watching: HashMap<String, (Vec<Block>, u32)>,
+    watching: Vec<(String, Vec<Block>, u32)>,
 }
 
 impl Plant {
@@ -291,23 +289,17 @@ impl Plant {
                 period_ms,
             });
         };
-        let gone: Vec<_> = self
-            .watching
-            .keys()
-            .filter(|tag| wanted.iter().all(|(t, ..)| t != *tag))
-            .cloned()
-            .collect();
-        for tag in gone {
-            say(&tag, &[], 1000);
-            self.watching.remove(&tag);
-        }
-        for (tag, blocks, period) in wanted {
-            let now = (blocks, period);
-            if self.watching.get(&tag) != Some(&now) {
-                say(&tag, &now.0, period);
-                self.watching.insert(tag, now);
+        for (tag, ..) in &self.watching {
+            if wanted.iter().all(|(t, ..)| t != tag) {
+                say(tag, &[], 1000);
             }
         }
+        for new in &wanted {
+            if !self.watching.contains(new) {
+                say(&new.0, &new.1, new.2);
+            }
+        }
+        self.watching = wanted;
         sent
     }
 

@@ -1,7 +1,5 @@
 //! The field tree as lines: what is open, what is nested how deep, what a field says.
 
-use std::collections::BTreeSet;
-
 use shared::map::row::{Reading, Source, Trust};
 use shared::tree::{Decoded, Field, FieldId};
 use shared::value::{Quality, Value};
@@ -28,7 +26,7 @@ fn open_at_first(field: &Field) -> bool {
 
 /// The lines to show; `toggled` are the fields that the user opened or closed.
 #[must_use]
-pub fn lines(decoded: &Decoded, toggled: &BTreeSet<u32>) -> Vec<Line> {
+pub fn lines(decoded: &Decoded, toggled: &[u32]) -> Vec<Line> {
     let mut lines = Vec::with_capacity(decoded.fields().len());
     // Fields around the current one, with whether they are open.
     let mut around: Vec<(FieldId, bool)> = Vec::new();
@@ -59,7 +57,7 @@ pub fn lines(decoded: &Decoded, toggled: &BTreeSet<u32>) -> Vec<Line> {
 
 /// What must be toggled so that everything is open.
 #[must_use]
-pub fn all_open(decoded: &Decoded) -> BTreeSet<u32> {
+pub fn all_open(decoded: &Decoded) -> Vec<u32> {
     decoded
         .iter()
         .filter(|(id, field)| !decoded.is_leaf(*id) && !open_at_first(field))
@@ -68,16 +66,15 @@ pub fn all_open(decoded: &Decoded) -> BTreeSet<u32> {
 }
 
 /// What must be toggled besides so that a field is shown.
-pub fn reveal(decoded: &Decoded, toggled: &mut BTreeSet<u32>, id: FieldId) {
+pub fn reveal(decoded: &Decoded, toggled: &mut Vec<u32>, id: FieldId) {
     let mut above = decoded.field(id).and_then(|f| f.parent);
     while let Some(parent) = above {
         let Some(field) = decoded.field(parent) else {
             return;
         };
-        if open_at_first(field) {
-            toggled.remove(&parent.get());
-        } else {
-            toggled.insert(parent.get());
+        toggled.retain(|id| *id != parent.get());
+        if !open_at_first(field) {
+            toggled.push(parent.get());
         }
         above = field.parent;
     }
@@ -237,12 +234,12 @@ mod tests {
     fn bits_begin_closed_and_open_on_demand() {
         let shown = status();
         let decoded = &shown.decoded;
-        let closed = lines(decoded, &BTreeSet::new());
+        let closed = lines(decoded, &[]);
         let open = lines(decoded, &all_open(decoded));
         assert_eq!(open.len(), decoded.fields().len());
         assert!(open.len() > closed.len() + 10);
         let bit = open.iter().find(|l| l.depth > 0).unwrap();
-        let mut toggled = BTreeSet::new();
+        let mut toggled = Vec::new();
         reveal(decoded, &mut toggled, bit.id);
         assert!(lines(decoded, &toggled).iter().any(|l| l.id == bit.id));
     }
@@ -250,7 +247,7 @@ mod tests {
     #[test]
     fn keys_walk_open_and_close() {
         let shown = status();
-        let lines = lines(&shown.decoded, &BTreeSet::new());
+        let lines = lines(&shown.decoded, &[]);
         let at = lines.iter().position(|l| !l.leaf && !l.open).unwrap();
         assert_eq!(step("ArrowDown", &lines, None), Step::To(lines[0].id));
         assert_eq!(

@@ -1,7 +1,5 @@
 //! The register browser: which lines are shown, and what a value says.
 
-use std::collections::BTreeSet;
-
 use shared::address::{RegisterNumber, Table};
 use shared::capture::Capture;
 use shared::decode::Context;
@@ -35,7 +33,17 @@ impl Item {
 }
 
 /// Which rows have their bits shown, by table and address.
-pub type Opened = BTreeSet<(Table, u16)>;
+pub type Opened = Vec<(Table, u16)>;
+
+/// Shows or hides the bits of a row.
+pub fn toggle(opened: &mut Opened, place: (Table, u16)) {
+    match opened.iter().position(|p| *p == place) {
+        Some(at) => {
+            opened.swap_remove(at);
+        }
+        None => opened.push(place),
+    }
+}
 
 /// Where a row is, for [`Opened`].
 #[must_use]
@@ -250,6 +258,16 @@ impl RawForm {
         }
     }
 
+    /// The form after this one.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        match self {
+            Self::Hex => Self::Decimal,
+            Self::Decimal => Self::Binary,
+            Self::Binary => Self::Hex,
+        }
+    }
+
     /// Writes words.
     #[must_use]
     pub fn write(self, words: &[u16], is_bits: bool) -> String {
@@ -336,7 +354,8 @@ mod tests {
         });
         let found = items(map, &filter, &Opened::new());
         assert!(!found.is_empty() && found.len() < 40);
-        let opened = Opened::from([place(row("actuator_status_1"))]);
+        let mut opened = Opened::new();
+        toggle(&mut opened, place(row("actuator_status_1")));
         assert_eq!(items(map, &filter, &opened).len(), found.len() + 16);
     }
 
