@@ -118,17 +118,17 @@ pub fn reveal(element: &web_sys::Element) {
 
 /// True while the window is narrower than the two panes need.
 #[derive(Clone, Copy, Debug)]
-pub struct Narrow(pub ReadSignal<bool>);
+pub struct Narrow(pub RwSignal<bool>);
 
 /// Watches the width of the window.
 pub fn provide_narrow() {
     let query = web_sys::window()
         .and_then(|w| w.match_media("(max-width: 719.98px)").ok())
         .flatten();
-    let (narrow, set) = signal(query.as_ref().is_some_and(web_sys::MediaQueryList::matches));
+    let narrow = RwSignal::new(query.as_ref().is_some_and(web_sys::MediaQueryList::matches));
     if let Some(query) = query {
         let again = query.clone();
-        let listener = Closure::<dyn Fn()>::new(move || set.set(again.matches()));
+        let listener = Closure::<dyn Fn()>::new(move || narrow.set(again.matches()));
         query.set_onchange(Some(listener.as_ref().unchecked_ref()));
         // The page lives as long as its window.
         listener.forget();

@@ -225,7 +225,9 @@ async fn the_register_browser_finds_by_every_notation() {
         .unchecked_into();
     for query in ["403005", "43005", "0x0BBC", "3004"] {
         search.set_value(query);
-        let event = web_sys::Event::new("input").unwrap();
+        let init = web_sys::EventInit::new();
+        init.set_bubbles(true);
+        let event = web_sys::Event::new_with_event_init_dict("input", &init).unwrap();
         search.dispatch_event(&event).unwrap();
         frontend::task::sleep(60).await;
         let rows = page.all("[data-testid=register-row]");

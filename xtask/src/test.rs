@@ -47,7 +47,7 @@ fn steps(report: &mut Report) -> Result {
             "--target", WASM,
         ])
     })?;
-    report.step("page", |_| size::limit(&web::web()?))?;
+    report.step("page", |_| size::size(&web::web()?))?;
     report.step("native tests", |log| {
         log.run_tests("native", &mut native("test", &["--no-fail-fast"]))?;
         log.run_tests("xtask", &mut shell::cargo(["test", "-p", "xtask"]))

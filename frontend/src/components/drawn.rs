@@ -36,8 +36,8 @@ pub fn Drawn(
     #[prop(optional)]
     on_act: Option<Callback<Act>>,
     /// Its `data-testid`.
-    #[prop(default = "")]
-    testid: &'static str,
+    #[prop(optional)]
+    testid: Option<&'static str>,
     /// Its ARIA role.
     #[prop(optional)]
     role: Option<&'static str>,

@@ -3,152 +3,49 @@
 //! Hovering or selecting a byte lights its field and the other way round; who selected does not
 //! scroll, the others do.
 
-use leptos::html::{Article, Div};
-use leptos::prelude::*;
-use leptos::task::spawn_local;
-use shared::tree::FieldId;
-use wasm_bindgen::JsCast;
+use std::sync::Arc;
 
-use crate::browser::{Narrow, copy, reveal};
+use leptos::html::Div;
+use leptos::prelude::*;
+
+use super::frame_parts::{Parts, come_into_view, hovered, number, on_click, on_key};
+use crate::browser::Narrow;
+use crate::components::drawn::{Draw, Drawn};
 use crate::erased::{effect, memo};
-use crate::markup::{facts, frame, hex, tree};
-use crate::state::selection::{Origin, Selection};
-use crate::state::tree::{Facts, Line, all_open, lines, reveal as open_to};
+use crate::markup::{Markup, facts, frame, hex, tree};
+use crate::state::selection::Selection;
+use crate::state::tree::Facts;
 use crate::state::work::Shown;
 
 /// What is selected, with the number of its frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Selected(pub RwSignal<Option<(u32, Selection)>>);
 
-/// Everything that the parts of a frame share.
-#[derive(Clone, Copy)]
-struct Parts {
-    shown: Memo<Option<Shown>>,
-    selected: RwSignal<Option<(u32, Selection)>>,
-    hovered: RwSignal<Option<u32>>,
-    toggled: RwSignal<Vec<u32>>,
-    article: NodeRef<Article>,
-    per_row: Signal<usize>,
-}
-
-impl Parts {
-    /// The selection, if it is in the frame that is shown.
-    fn selection(self) -> Option<Selection> {
-        let index = self.shown.with(|s| s.as_ref().map(|s| s.index))?;
-        self.selected
-            .get()
-            .filter(|(f, _)| *f == index)
-            .map(|s| s.1)
-    }
-
-    fn select(self, make: impl Fn(&Shown) -> Option<Selection>) {
-        let made = self
-            .shown
-            .with_untracked(|s| s.as_ref().and_then(|s| Some((s.index, make(s)?))));
-        self.selected.set(made);
-    }
-
-    fn toggle(self, id: u32) {
-        self.toggled
-            .update(|t| match t.iter().position(|toggled| *toggled == id) {
-                Some(at) => {
-                    t.swap_remove(at);
-                }
-                None => t.push(id),
-            });
-    }
-
-    fn lines(self) -> Vec<Line> {
-        self.shown.with_untracked(|s| {
-            s.as_ref().map_or_else(Vec::new, |s| {
-                self.toggled.with_untracked(|t| lines(&s.decoded, t))
-            })
-        })
-    }
-
-    /// Sets class and tab stop of bytes and fields.
-    fn mark(self) {
-        let Some(article) = self.article.get() else {
-            return;
-        };
-        let hovered = self.hovered.get();
-        let selection = self.selection();
-        let marked = self.shown.with(|s| {
-            let id = FieldId::new(hovered?);
-            s.as_ref()?.decoded.field(id).map(|f| f.place)
-        });
-        let byte_tab = selection.map_or(0, |s| s.byte);
-        each(&article, "[data-offset]", |element, at| {
-            let at = u16::try_from(at).unwrap_or(u16::MAX);
-            class(element, "marked", marked.is_some_and(|p| p.contains(at)));
-            let is_selected = selection.is_some_and(|s| s.place.contains(at));
-            class(element, "selected", is_selected);
-            tab(element, at == byte_tab);
-        });
-        let field = selection.and_then(|s| s.field).map(FieldId::get);
-        each(&article, "[data-field]", |element, id| {
-            class(element, "marked", hovered == Some(id));
-            class(element, "selected", field == Some(id));
-            let chosen = if field == Some(id) { "true" } else { "false" };
-            // Fails only for names that are none.
-            let _infallible = element.set_attribute("aria-selected", chosen);
-            tab(element, field.unwrap_or(0) == id);
-        });
-    }
-
-    fn find(self, attribute: &str, value: u32) -> Option<web_sys::HtmlElement> {
-        // The page may be gone by now.
-        let article = self.article.try_get_untracked()??;
-        let found = article.query_selector(&format!("[{attribute}=\"{value}\"]"));
-        found.ok()??.dyn_into().ok()
-    }
-
-    fn focus(self, attribute: &'static str, value: u32) {
-        request_animation_frame(move || {
-            if let Some(element) = self.find(attribute, value) {
-                // Fails only without a window.
-                let _infallible = element.focus();
-            }
-        });
-    }
-}
-
 /// The frame that is shown, with bytes, fields, problems and facts; says what to do if there is
 /// none.
 #[component]
 pub fn FrameDetail(
     /// The frame.
-    #[prop(into)]
-    shown: Signal<Option<Shown>>,
+    shown: Memo<Option<Shown>>,
     /// What is selected.
     selected: Selected,
     /// More about the frame, such as its time.
-    #[prop(into, default = Signal::stored(String::new()))]
-    aside: Signal<String>,
+    #[prop(optional)]
+    aside: Option<Signal<String>>,
     /// Called to go to the other frame of a pair.
     on_pair: Callback<u32>,
 ) -> impl IntoView {
     let narrow = use_context::<Narrow>();
+    let is_narrow = move || narrow.is_some_and(|n| n.0.get());
     let parts = Parts {
-        shown: memo(move || shown.get()),
+        shown,
         selected: selected.0,
         hovered: RwSignal::new(None),
         toggled: RwSignal::new(Vec::new()),
         article: NodeRef::new(),
-        per_row: Signal::derive(move || {
-            if narrow.is_some_and(|n| n.0.get()) {
-                8
-            } else {
-                16
-            }
-        }),
+        per_row: memo(move || if is_narrow() { 8 } else { 16 }),
     };
-    let (hex_node, tree_node) = (NodeRef::<Div>::new(), NodeRef::<Div>::new());
-    let text = move |make: fn(&Shown) -> String| {
-        parts
-            .shown
-            .with(|s| s.as_ref().map_or_else(String::new, make))
-    };
+    let (bytes, fields) = (NodeRef::<Div>::new(), NodeRef::<Div>::new());
 
     // Another frame: nothing is hovered or toggled in it.
     effect(move || {
@@ -156,27 +53,14 @@ pub fn FrameDetail(
         parts.hovered.set(None);
         parts.toggled.set(Vec::new());
     });
+    // Bytes and fields are marked in place, so they are not morphed.
     effect(move || {
         let per_row = parts.per_row.get();
-        let html = parts.shown.with(|s| {
-            s.as_ref()
-                .map_or_else(String::new, |s| hex::bytes(s, per_row))
-        });
-        if let Some(node) = hex_node.get() {
-            node.set_inner_html(&html);
-        }
-        untrack(|| parts.mark());
+        fill(bytes, parts, |s| hex::bytes(s, per_row));
     });
     effect(move || {
-        let html = parts.shown.with(|s| {
-            s.as_ref().map_or_else(String::new, |s| {
-                parts.toggled.with(|t| tree::tree(&s.decoded, t))
-            })
-        });
-        if let Some(node) = tree_node.get() {
-            node.set_inner_html(&html);
-        }
-        untrack(|| parts.mark());
+        let toggled = parts.toggled.get();
+        fill(fields, parts, |s| tree::tree(&s.decoded, &toggled));
     });
     effect(move || parts.mark());
     effect(move || {
@@ -185,34 +69,32 @@ pub fn FrameDetail(
         }
     });
 
-    let facts = move || {
+    let head: Draw = Arc::new(move |html: &mut Markup| {
+        let aside = aside.map_or_else(String::new, |a| a.get());
+        parts.shown.with(|s| match s {
+            Some(shown) => frame::head_of(html, shown, &aside),
+            None => {
+                html.node("p", "empty", "Select a frame to see its bytes and fields.");
+            }
+        });
+    });
+    let columns: Draw = Arc::new(move |html: &mut Markup| {
+        tree::head(html, parts.toggled.with(Vec::is_empty));
+    });
+    let facts: Draw = Arc::new(move |html: &mut Markup| {
         let field = parts.selection().and_then(|s| s.field);
-        let facts = parts
+        let known = parts
             .shown
             .with(|s| Facts::of(&s.as_ref()?.decoded, field?));
-        facts.map_or_else(
-            || "Select a field or a byte to see where it is described.".to_owned(),
-            |f| facts::field(&f),
-        )
-    };
-    let expand = move |_| {
-        let all = parts
-            .shown
-            .with_untracked(|s| s.as_ref().map_or_else(Vec::new, |s| all_open(&s.decoded)));
-        parts
-            .toggled
-            .update(|t| *t = if t.is_empty() { all } else { Vec::new() });
-    };
-    let is_empty = move || parts.shown.with(Option::is_none);
+        facts::field(html, known.as_ref());
+    });
     view! {
-        <p class="empty" hidden=move || !is_empty()>
-            "Select a frame to see its bytes and fields."
-        </p>
         <article
             class="detail"
+            class:none=move || parts.shown.with(Option::is_none)
+            class:hex-8=move || parts.per_row.get() == 8
             data-testid="frame-detail"
             aria-label="Frame"
-            hidden=is_empty
             node_ref=parts.article
             on:click=move |event| on_click(&event, parts, on_pair)
             on:dblclick=move |event| {
@@ -222,226 +104,24 @@ pub fn FrameDetail(
             }
             on:mouseover=move |event| parts.hovered.set(hovered(&event, parts))
             on:mouseleave=move |_| parts.hovered.set(None)
+            on:keydown=move |event| on_key(&event, parts)
         >
-            <header class="detail-head">
-                <div inner_html=move || {
-                    let aside = aside.get();
-                    parts.shown.with(|s| s.as_ref().map_or_else(String::new, |s| frame::title(s, &aside)))
-                }></div>
-                <div class="actions">
-                    <span class="quiet">"Copy"</span>
-                    <CopyButtons/>
-                </div>
-            </header>
-            <ul class="frame-problems" inner_html=move || text(frame::problems)></ul>
-            <div
-                class="hex"
-                class:hex-8=move || parts.per_row.get() == 8
-                role="grid"
-                aria-label="Bytes"
-                node_ref=hex_node
-                on:keydown=move |event| hex_key(&event, parts)
-            ></div>
-            <div class="tree-head">
-                <span>"Field"</span>
-                <span class="right">"Value"</span>
-                <span>"Raw"</span>
-                <span>"Source"</span>
-                <button class="quiet-button" data-testid="expand-all" on:click=expand>
-                    {move || if parts.toggled.with(Vec::is_empty) { "All bits" } else { "Fewer" }}
-                </button>
-            </div>
-            <div
-                class="tree"
-                role="tree"
-                aria-label="Fields"
-                node_ref=tree_node
-                on:keydown=move |event| tree_key(&event, parts)
-            ></div>
-            <div class="facts" data-testid="field-facts" inner_html=facts></div>
+            <Drawn class="detail-top" draw=head/>
+            <div class="hex" role="grid" aria-label="Bytes" node_ref=bytes></div>
+            <Drawn class="tree-head" draw=columns/>
+            <div class="tree" role="tree" aria-label="Fields" node_ref=fields></div>
+            <Drawn class="facts" testid="field-facts" draw=facts/>
         </article>
     }
 }
 
-/// Copies the frame in three forms; the listener is the article's.
-#[component]
-fn CopyButtons() -> impl IntoView {
-    ["Hex", "Text", "JSON"]
-        .map(|form| {
-            view! {
-                <button
-                    class="button"
-                    data-copy=form
-                    data-testid=format!("copy-{}", form.to_ascii_lowercase())
-                    aria-label=format!("Copy as {form}")
-                >
-                    <span aria-live="polite">{form}</span>
-                </button>
-            }
-            .into_any()
-        })
-        .into_iter()
-        .collect::<Vec<_>>()
-}
-
-fn come_into_view(parts: Parts, selection: Selection) {
-    if selection.origin != Origin::Tree
-        && let Some(id) = selection.field
-        && parts.lines().iter().all(|line| line.id != id)
-    {
-        parts.shown.with_untracked(|s| {
-            if let Some(shown) = s {
-                parts.toggled.update(|t| open_to(&shown.decoded, t, id));
-            }
-        });
-    }
-    request_animation_frame(move || {
-        let byte = parts.find("data-offset", u32::from(selection.place.start));
-        if let Some(byte) = byte.filter(|_| selection.origin != Origin::Hex) {
-            reveal(&byte);
-        }
-        let line = selection
-            .field
-            .and_then(|id| parts.find("data-field", id.get()));
-        if let Some(line) = line.filter(|_| selection.origin != Origin::Tree) {
-            reveal(&line);
-        }
-    });
-}
-
-fn on_click(event: &web_sys::MouseEvent, parts: Parts, on_pair: Callback<u32>) {
-    if let Some(pair) = number(event, "data-pair") {
-        on_pair.run(pair);
-    } else if let Some(at) = number(event, "data-problem") {
-        parts.select(|s| {
-            let problem = s.decoded.problems().get(usize::try_from(at).ok()?)?;
-            Some(Selection::problem(&s.decoded, problem.place))
-        });
-    } else if let Some(at) = number(event, "data-offset") {
-        let at = u16::try_from(at).unwrap_or(u16::MAX);
-        parts.select(|s| Some(Selection::byte(&s.decoded, at)));
-    } else if let Some(id) = number(event, "data-field") {
-        if within(event, ".tree-chevron").is_some() {
-            parts.toggle(id);
-        } else {
-            parts.select(|s| Selection::field(&s.decoded, FieldId::new(id)));
-        }
-    } else if let Some(button) = within(event, "[data-copy]") {
-        let form = button.get_attribute("data-copy").unwrap_or_default();
-        let text = parts.shown.with_untracked(|s| {
-            s.as_ref().map(|s| match form.as_str() {
-                "JSON" => s.json(),
-                "Text" => s.text(),
-                _ => shared::render::Spaced(s.decoded.bytes()).to_string(),
-            })
-        });
-        spawn_local(say_copied(button, form, text.unwrap_or_default()));
-    }
-}
-
-/// Copies, and says in the button whether it worked.
-pub async fn say_copied(button: web_sys::Element, label: String, text: String) {
-    let done = copy(text).await;
-    let words = button.query_selector("span").ok().flatten();
-    let say = |text: &str| {
-        if let Some(words) = &words {
-            words.set_text_content(Some(text));
-        }
-    };
-    say(if done { "Copied" } else { "No clipboard" });
-    crate::task::sleep(1500).await;
-    say(&label);
-}
-
-fn hovered(event: &web_sys::MouseEvent, parts: Parts) -> Option<u32> {
-    number(event, "data-field").or_else(|| {
-        let at = u16::try_from(number(event, "data-offset")?).ok()?;
-        let owner = |s: &Option<Shown>| s.as_ref()?.decoded.owner(at);
-        parts.shown.with_untracked(owner).map(FieldId::get)
-    })
-}
-
-fn hex_key(event: &web_sys::KeyboardEvent, parts: Parts) {
-    let len = parts
+/// Draws bytes or fields of the frame, and marks them.
+fn fill(node: NodeRef<Div>, parts: Parts, draw: impl Fn(&Shown) -> String) {
+    let html = parts
         .shown
-        .with_untracked(|s| s.as_ref().map_or(0, |s| s.decoded.bytes().len()));
-    let at = untrack(|| parts.selection()).map_or(0, |s| usize::from(s.byte));
-    let row = parts.per_row.get_untracked();
-    let next = match event.key().as_str() {
-        "ArrowRight" => at + 1,
-        "ArrowLeft" => at.saturating_sub(1),
-        "ArrowDown" if at + row < len => at + row,
-        "ArrowUp" if at >= row => at - row,
-        "ArrowDown" | "ArrowUp" => at,
-        "Home" => at - at % row,
-        "End" => at - at % row + row - 1,
-        _ => return,
-    };
-    event.prevent_default();
-    let next = u16::try_from(next.min(len.saturating_sub(1))).unwrap_or(u16::MAX);
-    parts.select(|s| Some(Selection::byte(&s.decoded, next)));
-    parts.focus("data-offset", u32::from(next));
-}
-
-fn tree_key(event: &web_sys::KeyboardEvent, parts: Parts) {
-    if event.ctrl_key() || event.alt_key() || event.meta_key() {
-        return;
+        .with(|s| s.as_ref().map_or_else(String::new, draw));
+    if let Some(node) = node.get() {
+        node.set_inner_html(&html);
     }
-    let lines = parts.lines();
-    let field = untrack(|| parts.selection()).and_then(|s| s.field);
-    let at = lines.iter().position(|l| Some(l.id) == field);
-    match crate::state::tree::step(&event.key(), &lines, at) {
-        crate::state::tree::Step::To(id) => {
-            event.prevent_default();
-            parts.select(|s| Selection::field(&s.decoded, id));
-            parts.focus("data-field", id.get());
-        }
-        crate::state::tree::Step::Toggle(id) => {
-            event.prevent_default();
-            parts.toggle(id.get());
-            parts.focus("data-field", id.get());
-        }
-        crate::state::tree::Step::Nothing => {}
-    }
-}
-
-/// The element around the target of an event that has this selector.
-#[must_use]
-pub fn within(event: &web_sys::MouseEvent, selector: &str) -> Option<web_sys::Element> {
-    let target = event.target()?.dyn_into::<web_sys::Element>().ok()?;
-    target.closest(selector).ok()?
-}
-
-/// The number in an attribute of the target of an event, or of an element around it.
-#[must_use]
-pub fn number(event: &web_sys::MouseEvent, attribute: &str) -> Option<u32> {
-    let element = within(event, &format!("[{attribute}]"))?;
-    element.get_attribute(attribute)?.parse().ok()
-}
-
-/// Calls `act` for every element with the selector `[attribute]`, with the attribute's number.
-fn each(root: &web_sys::Element, selector: &str, act: impl Fn(&web_sys::Element, u32)) {
-    let Ok(found) = root.query_selector_all(selector) else {
-        return;
-    };
-    let name = selector.trim_matches(['[', ']']);
-    for at in 0..found.length() {
-        let Some(element) = found.item(at) else {
-            continue;
-        };
-        let element: web_sys::Element = element.unchecked_into();
-        let value = element.get_attribute(name).and_then(|v| v.parse().ok());
-        if let Some(value) = value {
-            act(&element, value);
-        }
-    }
-}
-
-fn class(element: &web_sys::Element, name: &str, on: bool) {
-    // Fails only for names that are none.
-    let _infallible = element.class_list().toggle_with_force(name, on);
-}
-
-fn tab(element: &web_sys::Element, on: bool) {
-    let _infallible = element.set_attribute("tabindex", if on { "0" } else { "-1" });
+    untrack(|| parts.mark());
 }

@@ -25,7 +25,7 @@ const SHOWN: usize = 20_000;
 pub fn DecodeInput() -> impl IntoView {
     let store: DecodeStore = expect_context();
     let file = NodeRef::<Input>::new();
-    let (over, set_over) = signal(false);
+    let over = RwSignal::new(false);
 
     // Paste works anywhere on the page.
     let handle = window_event_listener(ev::paste, move |event| {
@@ -51,16 +51,16 @@ pub fn DecodeInput() -> impl IntoView {
     let handles = [
         window_event_listener(ev::dragover, move |event| {
             event.prevent_default();
-            set_over.set(true);
+            over.set(true);
         }),
         window_event_listener(ev::dragleave, move |event| {
             if event.related_target().is_none() {
-                set_over.set(false);
+                over.set(false);
             }
         }),
         window_event_listener(ev::drop, move |event| {
             event.prevent_default();
-            set_over.set(false);
+            over.set(false);
             let Some(data) = event.data_transfer() else {
                 return;
             };

@@ -3,6 +3,7 @@
 pub mod conn;
 pub mod drawn;
 pub mod frame_detail;
+mod frame_parts;
 pub mod help;
 pub mod icon;
 pub mod input;

@@ -36,7 +36,7 @@ enum Entry {
 #[component]
 pub fn ProblemStrip() -> impl IntoView {
     let store: DecodeStore = expect_context();
-    let (with_notes, set_with_notes) = signal(false);
+    let with_notes = RwSignal::new(false);
     let entries = memo(move || {
         let text = store.work.with(|w| {
             w.as_ref()
@@ -79,7 +79,7 @@ pub fn ProblemStrip() -> impl IntoView {
         let listed = entries.with(|e| u64::try_from(e.len()).unwrap_or(u64::MAX));
         problem_head(html, total.get(), listed, with_notes.get());
     });
-    let on_act = Callback::new(move |act: Act| set_with_notes.set(!act.value.is_empty()));
+    let on_act = Callback::new(move |act: Act| with_notes.set(!act.value.is_empty()));
     view! {
         <section
             class="problem-strip"

@@ -1,8 +1,12 @@
 //! The way to the screens, and the state of the connection.
 
+use std::sync::Arc;
+
 use leptos::prelude::*;
 
-use crate::components::icon::{Glyph, Icon};
+use crate::components::drawn::{Draw, Drawn};
+use crate::components::icon::Glyph;
+use crate::markup::Markup;
 use crate::router::Router;
 use crate::state::route::{Route, Screen};
 
@@ -13,64 +17,77 @@ pub fn Rail(
     children: Children,
 ) -> impl IntoView {
     let screen = Router::get().screen();
-    let is_device = move || matches!(screen.get(), Screen::Devices | Screen::Device(..));
+    let draw: Draw = Arc::new(move |html: &mut Markup| links(html, &screen.get()));
     view! {
         <nav class="rail" aria-label="Screens">
-            <RailLink
-                to=Screen::Decode
-                label="Decode"
-                testid="nav-decode"
-                glyph=Glyph::Decode
-                here=Signal::derive(move || screen.get() == Screen::Decode)
-            />
-            <RailLink
-                to=Screen::Devices
-                label="Devices"
-                testid="nav-devices"
-                glyph=Glyph::Devices
-                here=Signal::derive(is_device)
-            />
-            <RailLink
-                to=Screen::Traffic(None)
-                label="Traffic"
-                testid="nav-traffic"
-                glyph=Glyph::Traffic
-                here=Signal::derive(move || matches!(screen.get(), Screen::Traffic(_)))
-            />
-            <RailLink
-                to=Screen::Settings
-                label="Settings"
-                testid="nav-settings"
-                glyph=Glyph::Settings
-                here=Signal::derive(move || screen.get() == Screen::Settings)
-            />
+            <Drawn class="rail-links" draw=draw/>
             <div class="rail-foot">{children()}</div>
         </nav>
     }
 }
 
-#[component]
-fn RailLink(
-    /// Where it leads.
-    to: Screen,
-    /// Its word.
-    label: &'static str,
-    /// Its `data-testid`.
-    testid: &'static str,
-    /// Its icon.
-    glyph: Glyph,
-    /// True while its screen is shown.
-    here: Signal<bool>,
-) -> impl IntoView {
-    view! {
-        <a
-            class="rail-link"
-            href=Route::to(to).to_string()
-            data-testid=testid
-            aria-current=move || here.get().then_some("page")
-        >
-            <Icon glyph=glyph size=20/>
-            <span>{label}</span>
-        </a>
+/// The links, the one to the present screen marked.
+fn links(html: &mut Markup, now: &Screen) {
+    let is_device = matches!(now, Screen::Devices | Screen::Device(..));
+    let is_traffic = matches!(now, Screen::Traffic(_));
+    let links = [
+        (
+            Screen::Decode,
+            "Decode",
+            "nav-decode",
+            Glyph::Decode,
+            *now == Screen::Decode,
+        ),
+        (
+            Screen::Devices,
+            "Devices",
+            "nav-devices",
+            Glyph::Devices,
+            is_device,
+        ),
+        (
+            Screen::Traffic(None),
+            "Traffic",
+            "nav-traffic",
+            Glyph::Traffic,
+            is_traffic,
+        ),
+        (
+            Screen::Settings,
+            "Settings",
+            "nav-settings",
+            Glyph::Settings,
+            *now == Screen::Settings,
+        ),
+    ];
+    for (to, label, testid, glyph, here) in links {
+        let address = Route::to(to).to_string();
+        let mut attributes = vec![
+            ("class", "rail-link"),
+            ("href", address.as_str()),
+            ("data-testid", testid),
+        ];
+        if here {
+            attributes.push(("aria-current", "page"));
+        }
+        html.open("a", &attributes);
+        html.large_icon(glyph).node("span", "", label).close("a");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_present_screen_is_marked() {
+        let mut html = Markup::new();
+        links(
+            &mut html,
+            &Screen::Device("X".into(), crate::state::route::Tab::Values),
+        );
+        let html = html.finish();
+        assert_eq!(html.matches("aria-current").count(), 1);
+        assert!(html.contains("data-testid=\"nav-devices\" aria-current"));
     }
 }

@@ -48,7 +48,7 @@ pub fn TrafficView(
     let cursor = RwSignal::new(None::<usize>);
     let chosen = RwSignal::new(None::<u32>);
     let selected = RwSignal::new(None);
-    let (in_detail, set_in_detail) = signal(false);
+    let in_detail = RwSignal::new(false);
 
     // While paused, a copy is shown that stands still.
     let with = move |act: &mut dyn FnMut(&Session)| {
@@ -150,7 +150,7 @@ pub fn TrafficView(
             .and_then(|t| t.get_attribute("data-pair")?.parse().ok());
         match pair {
             Some(pair) => go.run(pair),
-            None => set_in_detail.set(true),
+            None => in_detail.set(true),
         }
     });
     on_action(move |action| match action {
@@ -162,7 +162,7 @@ pub fn TrafficView(
         Action::Close => {
             chosen.set(None);
             cursor.set(None);
-            set_in_detail.set(false);
+            in_detail.set(false);
         }
         _ => {}
     });
@@ -230,7 +230,7 @@ pub fn TrafficView(
                     />
                 </section>
                 <section class="pane detail-pane" aria-label="Frame">
-                    <button class="button back" on:click=move |_| set_in_detail.set(false)>
+                    <button class="button back" on:click=move |_| in_detail.set(false)>
                         "Back to the frames"
                     </button>
                     <FrameDetail

@@ -1,6 +1,7 @@
 //! Settings, sources, keys: text that does not change while it is shown.
 
 use super::Markup;
+use super::control::Button;
 use crate::components::icon::Glyph;
 use crate::state::shortcuts::KEYS;
 use crate::theme::Theme;
@@ -45,6 +46,30 @@ pub fn keys(html: &mut Markup) {
         html.close("th").node("td", "", what).close("tr");
     }
     html.close("tbody").close("table");
+}
+
+/// The keys in a window over the page.
+pub fn help(html: &mut Markup) {
+    html.open("div", &[("class", "overlay")]).open(
+        "div",
+        &[
+            ("class", "dialog"),
+            ("role", "dialog"),
+            ("aria-modal", "true"),
+            ("aria-label", "Keys"),
+            ("data-testid", "help"),
+        ],
+    );
+    html.open("header", &[]).node("h2", "", "Keys");
+    Button {
+        act: "close-help",
+        words: "Close",
+        ..Button::default()
+    }
+    .draw(html);
+    html.close("header");
+    keys(html);
+    html.close("div").close("div");
 }
 
 /// The whole settings screen; `file` is true for a page from a disk.

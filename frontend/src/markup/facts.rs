@@ -11,10 +11,16 @@ pub fn fact(html: &mut Markup, name: &str, text: &str) {
     html.node("dt", "", name).node("dd", "", text);
 }
 
-/// The facts of a field of a frame.
-#[must_use]
-pub fn field(facts: &Facts) -> String {
-    let mut html = Markup::new();
+/// The facts of a field of a frame, or what to do to see them.
+pub fn field(html: &mut Markup, facts: Option<&Facts>) {
+    let Some(facts) = facts else {
+        html.node(
+            "p",
+            "quiet",
+            "Select a field or a byte to see where it is described.",
+        );
+        return;
+    };
     let (first, last) = facts.bytes;
     let bytes = if first >= last {
         format!("byte {first}")
@@ -40,7 +46,7 @@ pub fn field(facts: &Facts) -> String {
         }
     }
     if facts.quality != Quality::Good {
-        fact(&mut html, "Quality", facts.quality.label());
+        fact(html, "Quality", facts.quality.label());
     }
     let source = facts
         .source
@@ -49,12 +55,11 @@ pub fn field(facts: &Facts) -> String {
         Some(_) => format!("{source}, {}", trust(facts.trust)),
         None => source,
     };
-    fact(&mut html, "Source", &text);
+    fact(html, "Source", &text);
     if let Some(read) = facts.reading {
-        reading(&mut html, read);
+        reading(html, read);
     }
     html.close("dl");
-    html.finish()
 }
 
 /// Why a description differs from the print.

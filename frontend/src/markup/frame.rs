@@ -125,11 +125,39 @@ fn pair(html: &mut Markup, kind: Role, pair: Option<u32>) {
     }
 }
 
-/// Title, place and partner of a frame.
-#[must_use]
-pub fn title(shown: &Shown, aside: &str) -> String {
+/// Title, place and partner of a frame, ways to copy it, and its problems.
+pub fn head_of(html: &mut Markup, shown: &Shown, aside: &str) {
+    html.open("header", &[("class", "detail-head")])
+        .open("div", &[]);
+    title(html, shown, aside);
+    html.close("div").open("div", &[("class", "actions")]);
+    html.node("span", "quiet", "Copy");
+    for form in ["Hex", "Text", "JSON"] {
+        html.open(
+            "button",
+            &[
+                ("class", "button"),
+                ("data-copy", form),
+                (
+                    "data-testid",
+                    &format!("copy-{}", form.to_ascii_lowercase()),
+                ),
+                ("aria-label", &format!("Copy as {form}")),
+            ],
+        );
+        html.open("span", &[("aria-live", "polite")])
+            .text(form)
+            .close("span")
+            .close("button");
+    }
+    html.close("div").close("header");
+    html.open("ul", &[("class", "frame-problems")]);
+    problems(html, shown);
+    html.close("ul");
+}
+
+fn title(html: &mut Markup, shown: &Shown, aside: &str) {
     let frame = shown.frame;
-    let mut html = Markup::new();
     html.open("h2", &[]);
     html.node("span", "quiet", &format!("#{} ", shown.index));
     if frame.is_noise() {
@@ -166,13 +194,10 @@ pub fn title(shown: &Shown, aside: &str) -> String {
         html.text(&format!("frame {pair}")).close("button");
     }
     html.text(aside).close("p");
-    html.finish()
 }
 
 /// The problems of a frame, each a button that shows the bytes.
-#[must_use]
-pub fn problems(shown: &Shown) -> String {
-    let mut html = Markup::new();
+fn problems(html: &mut Markup, shown: &Shown) {
     for (at, problem) in shown.decoded.problems().iter().enumerate() {
         html.open("li", &[]).open(
             "button",
@@ -188,7 +213,6 @@ pub fn problems(shown: &Shown) -> String {
         html.node("span", "quiet where", &place_words(problem));
         html.close("button").close("li");
     }
-    html.finish()
 }
 
 /// A problem in the list of a whole capture.
@@ -247,8 +271,11 @@ mod tests {
     fn head_and_problems() {
         let loaded = load(POLL, None);
         let shown = Shown::of(&loaded.session, 2, Device::None).unwrap();
-        assert!(title(&shown, "").contains("#2 "));
-        assert!(problems(&shown).contains("data-problem=\"0\""));
+        let mut html = Markup::new();
+        head_of(&mut html, &shown, "");
+        let html = html.finish();
+        assert!(html.contains("#2 ") && html.contains("data-problem=\"0\""));
+        assert!(html.contains("data-testid=\"copy-json\""));
         assert!(head("Offset", false).contains("Offset"));
     }
 }

@@ -65,7 +65,12 @@ impl Markup {
 
     /// An icon beside a text that says the same.
     pub fn icon(&mut self, glyph: Glyph) -> &mut Self {
-        self.drawing("icon", "1.5", glyph.path(), None)
+        self.drawing(("icon", "16"), "1.5", glyph.path(), None)
+    }
+
+    /// An icon of 20 pixels.
+    pub fn large_icon(&mut self, glyph: Glyph) -> &mut Self {
+        self.drawing(("icon", "20"), "1.5", glyph.path(), None)
     }
 
     /// The mark of a severity: shape besides colour.
@@ -78,10 +83,16 @@ impl Markup {
             Severity::Warning => ("severity warning", "M10 2.5l8.5 15h-17zM10 8v4.5M10 15v.2"),
             Severity::Note => ("severity note", "M10 3a7 7 0 1 0 .01 0M10 9v4.5M10 6.3v.2"),
         };
-        self.drawing(class, "1.8", path, Some(severity.key()))
+        self.drawing((class, "16"), "1.8", path, Some(severity.key()))
     }
 
-    fn drawing(&mut self, class: &str, stroke: &str, path: &str, label: Option<&str>) -> &mut Self {
+    fn drawing(
+        &mut self,
+        (class, size): (&str, &str),
+        stroke: &str,
+        path: &str,
+        label: Option<&str>,
+    ) -> &mut Self {
         let name = match label {
             Some(label) => ("aria-label", label),
             None => ("aria-hidden", "true"),
@@ -90,8 +101,8 @@ impl Markup {
             "svg",
             &[
                 ("class", class),
-                ("width", "16"),
-                ("height", "16"),
+                ("width", size),
+                ("height", size),
                 ("viewBox", "0 0 20 20"),
                 ("fill", "none"),
                 ("stroke", "currentColor"),

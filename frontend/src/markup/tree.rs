@@ -8,6 +8,24 @@ use super::Markup;
 use crate::components::icon::Glyph;
 use crate::state::tree::{Facts, Line, lines};
 
+/// Names of the columns, and a button that opens or closes all bits.
+pub fn head(html: &mut Markup, all_closed: bool) {
+    html.node("span", "", "Field")
+        .node("span", "right", "Value")
+        .node("span", "", "Raw")
+        .node("span", "", "Source");
+    html.open(
+        "button",
+        &[
+            ("class", "quiet-button"),
+            ("data-expand", ""),
+            ("data-testid", "expand-all"),
+        ],
+    );
+    html.text(if all_closed { "All bits" } else { "Fewer" })
+        .close("button");
+}
+
 /// The field tree; `toggled` are the fields that the user opened or closed.
 #[must_use]
 pub fn tree(decoded: &Decoded, toggled: &[u32]) -> String {

@@ -33,7 +33,7 @@ pub fn DecodePage() -> impl IntoView {
     let store: DecodeStore = expect_context();
     let Narrow(narrow) = expect_context();
     let router = Router::get();
-    let (in_detail, set_in_detail) = signal(false);
+    let in_detail = RwSignal::new(false);
 
     // A link may name a sample, and the address names the open one.
     let wanted = router.peek().get("sample").and_then(by_key);
@@ -88,7 +88,7 @@ pub fn DecodePage() -> impl IntoView {
             .and_then(|t| t.get_attribute("data-pair")?.parse().ok());
         match pair {
             Some(pair) => go.run(pair),
-            None => set_in_detail.set(true),
+            None => in_detail.set(true),
         }
     });
     on_action(move |action| match action {
@@ -103,14 +103,14 @@ pub fn DecodePage() -> impl IntoView {
         Action::Find => focus("[data-find]"),
         Action::Close => {
             store.selected.set(None);
-            set_in_detail.set(false);
+            in_detail.set(false);
         }
         _ => {}
     });
     // A jump from the strip opens the detail.
     effect(move || {
         if store.selected.get().is_some() {
-            set_in_detail.set(true);
+            in_detail.set(true);
         }
     });
 
@@ -159,7 +159,7 @@ pub fn DecodePage() -> impl IntoView {
                     />
                 </section>
                 <section class="pane detail-pane" aria-label="Frame">
-                    <button class="button back" on:click=move |_| set_in_detail.set(false)>
+                    <button class="button back" on:click=move |_| in_detail.set(false)>
                         "Back to the frames"
                     </button>
                     <FrameDetail shown=shown selected=Selected(store.selected) on_pair=go/>
