@@ -66,7 +66,7 @@ pub fn Drawn(
             node_ref=node
             on:click=move |event| act(event.into())
             on:change=act
-            on:input=move |event| act(event)
+            on:input=act
         ></div>
     }
 }
