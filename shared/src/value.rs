@@ -7,6 +7,7 @@ use crate::scale::Scale;
 /// The meaning of a field. Small and `Copy`: text, series and raw bytes stay in the frame and are
 /// read from the field's place when they are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u32)]
 pub enum Value {
     /// The field only groups the fields below it.
     Group,

@@ -17,7 +17,7 @@ use shared::address::{Address, Table};
 use shared::decode::{Context, decode_into};
 use shared::device::Device;
 use shared::frame::{Frame, Framing, Role, scan_into};
-use shared::map::decode::values;
+use shared::map::decode::each_value;
 use shared::map::row::Model;
 use shared::tree::Decoded;
 use tests::load::{Load, polls, requests, response};
@@ -104,10 +104,11 @@ fn mapped(load: &Load, index: &mut Vec<Frame>) -> u64 {
         };
         let start = Address::new(u16::from_be_bytes([request[2], request[3]]));
         let data = bytes(frame);
-        for (row, judged) in values(map, Table::Holding, start, &data[3..data.len() - 2]) {
-            black_box(&(row, judged));
+        let words = &data[3..data.len() - 2];
+        each_value(map, Table::Holding, start, words, |row, judged| {
+            black_box((row, &judged));
             count += 1;
-        }
+        });
     }
     count
 }

@@ -5,7 +5,7 @@ use shared::address::{Address, Table};
 use shared::decode::{Context, decode_into};
 use shared::device::Device;
 use shared::frame::{Framing, Role, scan_into};
-use shared::map::decode::values;
+use shared::map::decode::each_value;
 use shared::map::row::Model;
 use shared::tree::Decoded;
 use std::hint::black_box;
@@ -59,10 +59,11 @@ fn values_of_the_map() {
             let request = bytes(&index[frame.pair().expect("paired") as usize]);
             let start = Address::new(u16::from_be_bytes([request[2], request[3]]));
             let data = bytes(frame);
-            for item in values(map, Table::Holding, start, &data[3..data.len() - 2]) {
-                black_box(item);
+            let words = &data[3..data.len() - 2];
+            each_value(map, Table::Holding, start, words, |row, judged| {
+                black_box((row, &judged));
                 count += 1;
-            }
+            });
         }
     });
     assert!(count > 0);

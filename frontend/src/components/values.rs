@@ -66,7 +66,9 @@ impl Browser {
     fn around(self, row: &Row) -> Around {
         let (reachable, is_watched) = self.with(|device| {
             device.map_or((false, false), |d| {
-                let lost = d.outcome.is_some_and(|o| o != Outcome::Ok);
+                let lost = d
+                    .outcome
+                    .is_some_and(|o| !matches!(o, Outcome::Ok | Outcome::Exception));
                 (!lost, watched(d.device).iter().any(|b| holds(b, row)))
             })
         });

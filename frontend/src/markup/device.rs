@@ -3,10 +3,11 @@
 use shared::proto::Outcome;
 
 use super::Markup;
+use super::valve::{bar, torque};
 use crate::components::ne107::Sign;
 use crate::format::age;
 use crate::state::health::{Health, outcome};
-use crate::state::overview::{Active, Figure, Overview, Travel};
+use crate::state::overview::{Active, Overview};
 use crate::state::plant::DeviceState;
 use crate::state::route::{Route, Screen, Tab};
 
@@ -96,7 +97,7 @@ pub fn row(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u6
     html.node("span", "device-state", state);
     html.node("span", "device-alarms", &alarm_words(overview));
     html.node("span", "quiet device-model", device.device.label());
-    let place = format!("{} · unit {}", device.info.bus, device.info.unit);
+    let place = format!("unit {} · {}", device.info.unit, device.info.bus);
     html.node("span", "quiet device-bus", &place);
     html.node("span", "num quiet device-age", &since(device, now));
     html.close("div");
@@ -106,47 +107,6 @@ fn since(device: &DeviceState, now: u64) -> String {
     device
         .last_ok
         .map_or_else(|| "never".to_owned(), |at| age(now.saturating_sub(at)))
-}
-
-/// A thin bar; a picture of the number beside it.
-fn bar(html: &mut Markup, position: Option<&Figure>) {
-    html.open(
-        "svg",
-        &[
-            ("class", "bar"),
-            ("viewBox", "0 0 100 6"),
-            ("preserveAspectRatio", "none"),
-            ("aria-hidden", "true"),
-        ],
-    );
-    rect(html, "bar-track", (0, 0, 100, 6));
-    if let Some(position) = position {
-        rect(html, "bar-fill", (0, 0, percent(position), 6));
-    }
-    html.close("svg");
-}
-
-fn rect(html: &mut Markup, class: &str, (x, y, width, height): (i32, i32, i32, i32)) {
-    html.open(
-        "rect",
-        &[
-            ("class", class),
-            ("x", &x.to_string()),
-            ("y", &y.to_string()),
-            ("width", &width.to_string()),
-            ("height", &height.to_string()),
-        ],
-    );
-    html.close("rect");
-}
-
-/// A figure as a whole number from -100 to 100, for drawing.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "clamped to what fits in a picture"
-)]
-fn percent(figure: &Figure) -> i32 {
-    figure.value.clamp(-100.0, 100.0).round() as i32
 }
 
 /// The alarms and warnings that are set, in words.
@@ -184,8 +144,10 @@ pub fn header(html: &mut Markup, device: &DeviceState, overview: &Overview, now:
     html.node("span", "", &overview.state)
         .node("span", "quiet", overview.mode);
     html.close("p");
-    let silent = device.outcome.is_some_and(|o| o != Outcome::Ok);
-    if silent || !up {
+    if !is_stale(device, up) {
+        let words = format!("last answer {} ago", since(device, now));
+        html.node("p", "quiet", &words);
+    } else {
         html.open(
             "p",
             &[("class", "device-silent"), ("data-testid", "device-silent")],
@@ -193,7 +155,7 @@ pub fn header(html: &mut Markup, device: &DeviceState, overview: &Overview, now:
         let words = match (up, device.outcome) {
             (false, _) => "No connection",
             (true, Some(o)) => outcome(o),
-            (true, None) => "",
+            (true, None) => "Not asked yet",
         };
         html.text(words)
             .text(", last good answer ")
@@ -206,6 +168,13 @@ pub fn header(html: &mut Markup, device: &DeviceState, overview: &Overview, now:
             html.node("p", "quiet device-why", &device.text);
         }
     }
+}
+
+/// True while nobody knows what the device does now.
+#[must_use]
+pub fn is_stale(device: &DeviceState, up: bool) -> bool {
+    // A refusal is an answer, too.
+    !up || !matches!(device.outcome, Some(Outcome::Ok | Outcome::Exception))
 }
 
 /// The tabs of a device.
@@ -226,9 +195,11 @@ pub fn tabs(html: &mut Markup, tag: &str, now: Tab) {
     }
 }
 
-/// The figures of the overview: position, torque, mode and facts.
-pub fn figures(html: &mut Markup, overview: &Overview) {
-    html.open("p", &[("class", "big"), ("data-testid", "position")]);
+/// The figures of the overview: position, torque, mode and facts. Stale ones are faint and said to
+/// be so.
+pub fn figures(html: &mut Markup, overview: &Overview, stale: bool) {
+    let class = if stale { "big stale" } else { "big" };
+    html.open("p", &[("class", class), ("data-testid", "position")]);
     match &overview.position {
         Some(position) => {
             html.text(&position.text)
@@ -241,8 +212,11 @@ pub fn figures(html: &mut Markup, overview: &Overview) {
     }
     html.close("p");
     html.open("p", &[("class", "big-state")]);
-    html.text(&overview.state).close("p");
-    html.node("h3", "", "Torque");
+    html.text(&overview.state);
+    if stale {
+        html.text(" ").node("em", "quality stale-mark", "stale");
+    }
+    html.close("p").node("h3", "", "Torque");
     torque(html, overview);
     html.open("dl", &[("class", "fact-list")]);
     if !overview.mode.is_empty() {
@@ -252,143 +226,6 @@ pub fn figures(html: &mut Markup, overview: &Overview) {
         super::facts::fact(html, label, text);
     }
     html.close("dl");
-}
-
-/// Torque as a bar from the middle, with its limits.
-fn torque(html: &mut Markup, overview: &Overview) {
-    let Some(torque) = &overview.torque else {
-        html.node("p", "quiet", "not read yet");
-        return;
-    };
-    html.open("p", &[("class", "torque-now")]);
-    html.node("b", "", &torque.text)
-        .text(" ")
-        .node("i", "unit", torque.unit);
-    if let Some(quality) = torque.quality {
-        html.text(" ").node("em", "quality", quality);
-    }
-    html.close("p");
-    let limits = (
-        overview.torque_limits.0.as_ref().map(percent),
-        overview.torque_limits.1.as_ref().map(percent),
-    );
-    html.open(
-        "svg",
-        &[
-            ("class", "torque"),
-            ("viewBox", "-104 -8 208 48"),
-            ("role", "img"),
-            ("aria-label", "Torque against its limits"),
-        ],
-    );
-    rect(html, "bar-track", (-100, 12, 200, 10));
-    let now = percent(torque);
-    let beyond = limits.0.is_some_and(|l| now < -l) || limits.1.is_some_and(|l| now > l);
-    let class = if beyond { "bar-beyond" } else { "bar-fill" };
-    rect(html, class, (now.min(0), 12, now.abs(), 10));
-    line(html, "axis", (0, 8), (0, 26));
-    for limit in [limits.0.map(|l| -l), limits.1].into_iter().flatten() {
-        line(html, "limit", (limit, 9), (limit, 25));
-        label(html, "limit-text", limit, 6, &limit.abs().to_string());
-    }
-    label(html, "scale-text", 0, 35, "0");
-    label(html, "scale-text start", -100, 35, "100 open");
-    label(html, "scale-text end", 100, 35, "close 100");
-    html.close("svg");
-}
-
-fn line(html: &mut Markup, class: &str, from: (i32, i32), to: (i32, i32)) {
-    html.open(
-        "path",
-        &[
-            ("class", class),
-            ("d", &format!("M{} {}L{} {}", from.0, from.1, to.0, to.1)),
-        ],
-    );
-    html.close("path");
-}
-
-fn label(html: &mut Markup, class: &str, x: i32, y: i32, text: &str) {
-    html.open(
-        "text",
-        &[
-            ("class", class),
-            ("x", &x.to_string()),
-            ("y", &y.to_string()),
-        ],
-    );
-    html.text(text).close("text");
-}
-
-/// The valve, drawn simply: the gate in its bore, the stem above it, the travel and its limits.
-pub fn valve(html: &mut Markup, overview: &Overview) {
-    let position = overview.position.as_ref().map(percent);
-    let words = match position {
-        Some(p) => format!("Valve {p} % open, {}", overview.state),
-        None => "Position not read yet".to_owned(),
-    };
-    html.open(
-        "svg",
-        &[
-            ("class", "valve"),
-            ("viewBox", "0 22 260 290"),
-            ("role", "img"),
-            ("aria-label", &words),
-        ],
-    );
-    // Pipe, bonnet and actuator.
-    for d in [
-        "M20 206h76M164 206h76M20 296h76M164 296h76",
-        "M96 206v-106h68v106M96 296h68",
-        "M20 200v102M240 200v102",
-    ] {
-        html.open("path", &[("class", "body"), ("d", d)])
-            .close("path");
-    }
-    rect(html, "actuator", (88, 58, 84, 42));
-    // A stem of 84 above a gate of 90 that travels 90.
-    let gate = 206 - position.unwrap_or(0).clamp(0, 100) * 9 / 10;
-    if position.is_some() {
-        line(html, "stem", (130, gate), (130, gate - 84));
-        rect(html, "gate", (104, gate, 52, 90));
-        let pointer = format!("M172 {gate}l10 -5v10z");
-        html.open("path", &[("class", "pointer"), ("d", &pointer)])
-            .close("path");
-    }
-    // The scale: 0 where the gate is closed, 100 where it is open.
-    line(html, "axis", (188, 116), (188, 206));
-    for percent in [0, 25, 50, 75, 100] {
-        let y = 206 - percent * 9 / 10;
-        line(html, "axis", (188, y), (193, y));
-        if percent % 50 == 0 {
-            label(html, "scale-text start", 197, y + 4, &percent.to_string());
-        }
-    }
-    for (is, y, text) in [
-        (overview.open_limit, 116, "open limit"),
-        (overview.close_limit, 206, "close limit"),
-    ] {
-        if is {
-            line(html, "reached", (182, y), (194, y));
-            label(html, "limit-text start", 197, y - 9, text);
-        }
-    }
-    let arrow = match overview.travel {
-        Travel::Opening => Some("M62 150v-56M50 108l12 -14 12 14"),
-        Travel::Closing => Some("M62 94v56M50 136l12 14 12 -14"),
-        Travel::Stopped => None,
-    };
-    if let Some(d) = arrow {
-        html.open("path", &[("class", "travel"), ("d", d)])
-            .close("path");
-        let word = if overview.travel == Travel::Opening {
-            "opening"
-        } else {
-            "closing"
-        };
-        label(html, "scale-text", 62, 172, word);
-    }
-    html.close("svg");
 }
 
 /// The alarms, warnings and status bits that are set.
@@ -427,6 +264,7 @@ fn list(html: &mut Markup, title: &str, bits: &[Active], mark: Option<Sign>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::overview::{Figure, Travel};
 
     fn overview() -> Overview {
         Overview {
@@ -451,18 +289,10 @@ mod tests {
     }
 
     #[test]
-    fn the_valve_is_a_picture_of_the_data() {
-        let html = drawn(valve, &overview());
-        assert!(html.contains("45 % open"));
-        assert!(html.contains("opening"));
-        assert!(!html.contains("style="));
-        assert!(drawn(valve, &Overview::default()).contains("not read yet"));
-    }
-
-    #[test]
     fn figures_and_conditions() {
-        let figures = drawn(figures, &overview());
+        let figures = drawn(|html, o| figures(html, o, true), &overview());
         assert!(figures.contains("data-testid=\"position\">45.2"));
+        assert!(figures.contains("stale"));
         assert!(drawn(conditions, &overview()).contains("none"));
         assert!(drawn(conditions, &Overview::default()).contains("not read yet"));
     }

@@ -14,6 +14,7 @@ pub mod hex;
 pub mod toolbar;
 pub mod tree;
 pub mod values;
+pub mod valve;
 
 use crate::components::icon::Glyph;
 use shared::problem::Severity;

@@ -11,7 +11,7 @@ use crate::components::traffic::TrafficView;
 use crate::components::values::ValuesView;
 use crate::erased::{effect, memo};
 use crate::live::Live;
-use crate::markup::{Markup, device};
+use crate::markup::{Markup, device, valve};
 use crate::router::Router;
 use crate::state::overview::{Overview, read_once};
 use crate::state::plant::DeviceState;
@@ -75,8 +75,8 @@ pub fn DevicePage(
         }
         (Some(_), Tab::Overview) => view! {
             <div class="overview" data-testid="overview">
-                <Drawn class="overview-valve" draw=draw(|html, _, o, _, _| device::valve(html, o))/>
-                <Drawn class="overview-figures" draw=draw(|html, _, o, _, _| device::figures(html, o))/>
+                <Drawn class="overview-valve" draw=draw(|html, _, o, _, _| valve::valve(html, o))/>
+                <Drawn class="overview-figures" draw=draw(|html, d, o, _, up| device::figures(html, o, device::is_stale(d, up)))/>
                 <Drawn
                     class="overview-conditions"
                     draw=draw(|html, _, o, _, _| device::conditions(html, o))

@@ -1,5 +1,6 @@
 //! What the page knows, as plain Rust: no signals, no browser, tested natively.
 
+mod absorb;
 pub mod detect;
 pub mod findings;
 pub mod health;

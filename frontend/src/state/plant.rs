@@ -1,13 +1,13 @@
 //! What the backend has sent, decoded: buses with their frames, devices with their values.
 
 use shared::capture::{Capture, Direction, Micros};
-use shared::decode::pdu_of;
 use shared::device::Device;
-use shared::frame::{Framing, Role};
+use shared::frame::Framing;
 use shared::image::Image;
 use shared::proto::{Block, Bus, DeviceInfo, LineState, Outcome, ToBackend, ToPage, VERSION, Way};
 use shared::session::Session;
 
+use super::absorb::{absorb, bytes_of};
 use super::job::Job;
 
 /// Frames kept for each bus.
@@ -369,40 +369,6 @@ fn reads(tag: &str, job: &mut Job, next_id: &mut u32) -> Vec<ToBackend> {
             id,
             device: tag.to_owned(),
             block,
-        })
-        .collect()
-}
-
-/// Takes the values of an answer into the image of its device.
-fn absorb(bus: &BusState, index: u32, devices: &mut [DeviceState]) {
-    let Some(frame) = bus.session.frame(index) else {
-        return;
-    };
-    if frame.role != Role::Response || frame.marks.is_damaged() {
-        return;
-    }
-    let pdu = |index| pdu_of(bus.session.bytes(index)?, bus.session.framing());
-    let Some((request, response)) = frame
-        .pair()
-        .filter(|pair| *pair < index)
-        .and_then(|pair| Some((pdu(pair)?, pdu(index)?)))
-    else {
-        return;
-    };
-    let at = bus.session.at(index).unwrap_or_default();
-    for device in devices {
-        if device.info.bus == bus.info.name && device.info.unit == frame.unit {
-            device.image.absorb(&request, &response, at);
-        }
-    }
-}
-
-fn bytes_of(hex: &str) -> Vec<u8> {
-    hex.as_bytes()
-        .chunks_exact(2)
-        .filter_map(|pair| {
-            let text = core::str::from_utf8(pair).ok()?;
-            u8::from_str_radix(text, 16).ok()
         })
         .collect()
 }

@@ -21,15 +21,13 @@ pub struct Judged {
 #[must_use]
 #[inline]
 pub fn value(row: &'static Row, bytes: &[u8]) -> Judged {
-    let judged = by_kind(row, bytes);
+    // Changed in place: to copy it whole costs more than to decode it.
+    let mut judged = by_kind(row, bytes);
     if row.reading.is_some_and(|r| r.settled == Settled::No)
         && judged.quality == Quality::Good
         && row.kind != Kind::Reserved
     {
-        return Judged {
-            quality: Quality::Disputed,
-            ..judged
-        };
+        judged.quality = Quality::Disputed;
     }
     judged
 }
@@ -238,51 +236,46 @@ fn amount(row: &'static Row, unit: u8) -> Judged {
     }
 }
 
-/// Values of a block of registers without a tree: each whole row with its judged value.
+/// Visits the values of a block of registers without a tree: each whole row with its judged value.
 ///
 /// Rows of which only a part lies in the block are left out. `data` are the words from `start`.
-#[must_use]
-pub fn values<'a>(
+/// A visitor and no iterator, because an item that travels through an `Option` is copied several
+/// times, which costs more than to decode it.
+#[inline]
+pub fn each_value(
+    map: &'static DeviceMap,
+    table: Table,
+    start: Address,
+    data: &[u8],
+    mut visit: impl FnMut(&'static Row, Judged),
+) {
+    let (rows, mut data) = whole(map, table, start, data);
+    for row in rows {
+        let Some((bytes, rest)) = data.split_at_checked(usize::from(row.words) << 1) else {
+            return;
+        };
+        data = rest;
+        visit(row, value(row, bytes));
+    }
+}
+
+/// The rows that begin in a block, and its data from the first of them on.
+fn whole<'a>(
     map: &'static DeviceMap,
     table: Table,
     start: Address,
     data: &'a [u8],
-) -> Values<'a> {
+) -> (&'static [&'static Row], &'a [u8]) {
     let count = u16::try_from(data.len() / 2).unwrap_or(u16::MAX);
-    let mut values = Values {
-        rows: map.slice_in(table, start, count),
-        data,
-    };
-    if let Some((first, rest)) = values.rows.split_first()
-        && first.address < start
-    {
-        let skip = usize::try_from(first.end())
-            .unwrap_or(0)
-            .saturating_sub(start.get().into());
-        values.data = data.get(skip.saturating_mul(2)..).unwrap_or(&[]);
-        values.rows = rest;
-    }
-    values
-}
-
-/// See [`values`].
-#[derive(Clone, Debug)]
-pub struct Values<'a> {
-    /// Rows without holes between them, the first of which begins where `data` does.
-    rows: &'static [&'static Row],
-    data: &'a [u8],
-}
-
-impl Iterator for Values<'_> {
-    type Item = (&'static Row, Judged);
-
-    #[inline]
-    fn next(&mut self) -> Option<Self::Item> {
-        let (row, rows) = self.rows.split_first()?;
-        let (bytes, data) = self.data.split_at_checked(usize::from(row.words) << 1)?;
-        self.rows = rows;
-        self.data = data;
-        Some((row, value(row, bytes)))
+    let rows = map.slice_in(table, start, count);
+    match rows.split_first() {
+        Some((first, rest)) if first.address < start => {
+            let skip = usize::try_from(first.end())
+                .unwrap_or(0)
+                .saturating_sub(start.get().into());
+            (rest, data.get(skip.saturating_mul(2)..).unwrap_or(&[]))
+        }
+        _ => (rows, data),
     }
 }
 
