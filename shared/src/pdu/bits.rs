@@ -18,16 +18,7 @@ impl<'a> Pdu<'a, '_> {
             self.raw(&defs::DATA, data.here());
             return Some(());
         };
-        let want = asked.div_ceil(8);
-        if want != u16::from(count) {
-            self.find(
-                Finding::NotAsAsked {
-                    got: u16::from(count),
-                    want,
-                },
-                data.here(),
-            );
-        }
+        self.as_asked(count, asked.div_ceil(8), data.here());
         self.packed(table, start, asked, data);
         Some(())
     }
@@ -58,26 +49,11 @@ impl<'a> Pdu<'a, '_> {
 
     /// FC 15: first address, quantity and, in a request, byte count and packed bits.
     pub(super) fn write_coils(&mut self) -> Option<()> {
-        let (start, start_place) = self.address(&defs::START, Table::Coil)?;
-        let (count, place) = self.quantity(&defs::QUANTITY, 1968)?;
-        self.check_end(Table::Coil, start, count, place);
+        let (start, count) = self.write_many(Table::Coil, 1968)?;
         if self.role == Role::Response {
-            self.echoed(1, start.get(), start_place);
-            self.echoed(3, count, place);
             return Some(());
         }
-        let (bytes, place) = self.byte(None, &defs::BYTE_COUNT)?;
-        let want = count.div_ceil(8);
-        if u16::from(bytes) != want {
-            self.find(
-                Finding::Count {
-                    got: u16::from(bytes),
-                    want,
-                },
-                place,
-            );
-        }
-        let data = self.data(usize::from(bytes));
+        let data = self.counted(count.div_ceil(8))?;
         self.packed(Table::Coil, start, count, data);
         Some(())
     }

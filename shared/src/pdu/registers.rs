@@ -62,16 +62,7 @@ impl<'a> Pdu<'a, '_> {
             self.nameless(data);
             return Some(());
         };
-        let want = asked.saturating_mul(2);
-        if want != u16::from(count) {
-            self.find(
-                Finding::NotAsAsked {
-                    got: u16::from(count),
-                    want,
-                },
-                data.here(),
-            );
-        }
+        self.as_asked(count, asked.saturating_mul(2), data.here());
         map::words(self.out, self.map(), table, start, data);
         Some(())
     }
@@ -82,14 +73,8 @@ impl<'a> Pdu<'a, '_> {
         self.echoed(1, address.get(), place);
         let before = self.reader.rest();
         let data = self.data(2);
-        if let (Some(sent), place) = (self.asked.and_then(|a| a.word(3)), data.here())
-            && let Some(pair) = before.first_chunk::<2>()
-            && self.role == Role::Response
-        {
-            let got = u16::from_be_bytes(*pair);
-            if got != sent {
-                self.find(Finding::EchoDiffers { got, want: sent }, place);
-            }
+        if let Some(pair) = before.first_chunk::<2>() {
+            self.echoed(3, u16::from_be_bytes(*pair), data.here());
         }
         map::words(self.out, self.map(), Table::Holding, address, data);
         Some(())
@@ -97,26 +82,11 @@ impl<'a> Pdu<'a, '_> {
 
     /// FC 16: first address, quantity and, in a request, byte count and values.
     pub(super) fn write_registers(&mut self) -> Option<()> {
-        let (start, start_place) = self.address(&defs::START, Table::Holding)?;
-        let (count, place) = self.quantity(&defs::QUANTITY, 123)?;
-        self.check_end(Table::Holding, start, count, place);
+        let (start, count) = self.write_many(Table::Holding, 123)?;
         if self.role == Role::Response {
-            self.echoed(1, start.get(), start_place);
-            self.echoed(3, count, place);
             return Some(());
         }
-        let (bytes, place) = self.byte(None, &defs::BYTE_COUNT)?;
-        let want = count.saturating_mul(2);
-        if u16::from(bytes) != want {
-            self.find(
-                Finding::Count {
-                    got: u16::from(bytes),
-                    want,
-                },
-                place,
-            );
-        }
-        let data = self.data(usize::from(bytes));
+        let data = self.counted(count.saturating_mul(2))?;
         map::words(self.out, self.map(), Table::Holding, start, data);
         Some(())
     }
@@ -140,18 +110,7 @@ impl<'a> Pdu<'a, '_> {
         let (write, _) = self.address(&defs::WRITE_START, Table::Holding)?;
         let (count, place) = self.quantity(&defs::WRITE_QUANTITY, 121)?;
         self.check_end(Table::Holding, write, count, place);
-        let (bytes, place) = self.byte(None, &defs::BYTE_COUNT)?;
-        let want = count.saturating_mul(2);
-        if u16::from(bytes) != want {
-            self.find(
-                Finding::Count {
-                    got: u16::from(bytes),
-                    want,
-                },
-                place,
-            );
-        }
-        let data = self.data(usize::from(bytes));
+        let data = self.counted(count.saturating_mul(2))?;
         map::words(self.out, self.map(), Table::Holding, write, data);
         Some(())
     }
@@ -201,6 +160,34 @@ impl<'a> Pdu<'a, '_> {
         }
         let (_, place) = data.take_rest();
         self.raw(&defs::UNKNOWN, place);
+    }
+
+    /// First address and quantity of a write of many; a response repeats both.
+    pub(super) fn write_many(&mut self, table: Table, max: u16) -> Option<(Address, u16)> {
+        let (start, start_place) = self.address(&defs::START, table)?;
+        let (count, place) = self.quantity(&defs::QUANTITY, max)?;
+        self.check_end(table, start, count, place);
+        self.echoed(1, start.get(), start_place);
+        self.echoed(3, count, place);
+        Some((start, count))
+    }
+
+    /// A byte count, which must be `want`, and as many bytes.
+    pub(super) fn counted(&mut self, want: u16) -> Option<Reader<'a>> {
+        let (bytes, place) = self.byte(None, &defs::BYTE_COUNT)?;
+        let got = u16::from(bytes);
+        if got != want {
+            self.find(Finding::Count { got, want }, place);
+        }
+        Some(self.data(usize::from(bytes)))
+    }
+
+    /// Says if a response holds another number of bytes than was asked for.
+    pub(super) fn as_asked(&mut self, count: u8, want: u16, place: Place) {
+        let got = u16::from(count);
+        if got != want {
+            self.find(Finding::NotAsAsked { got, want }, place);
+        }
     }
 
     /// Compares an echoed word with the request.
