@@ -1,10 +1,15 @@
-//! Turns `data/` into static tables: `OUT_DIR/maps.rs`, included by `map/mod.rs`.
+//! Turns `data/` into static tables: `OUT_DIR/maps.rs`, included by `map/mod.rs`, and
+//! `OUT_DIR/dop.rs`, included by `dop/mod.rs`, and `OUT_DIR/hart.rs`, included by `hart/mod.rs`.
 //!
 //! A map with a mistake must not build. All problems are printed, each with file, line and the
-//! number of its rule (see `build/rules.rs`), before the build stops.
+//! number of its rule (see `build/rules.rs`, `build/dop/rules.rs` and `build/hart/rules.rs`), before the build stops.
 
+#[path = "build/dop/mod.rs"]
+mod dop;
 #[path = "build/emit.rs"]
 mod emit;
+#[path = "build/hart/mod.rs"]
+mod hart;
 #[path = "build/read.rs"]
 mod read;
 #[path = "build/rules.rs"]
@@ -44,9 +49,25 @@ fn generate() -> io::Result<Vec<types::Problem>> {
     if problems.is_empty() {
         problems = rules::check(&data);
     }
+    let objects = dop::read(Path::new("data"), &mut problems)?;
+    if problems.is_empty() {
+        problems = dop::check(&objects, &data.docs);
+    }
+    let commands = hart::read(Path::new("data"), &mut problems)?;
+    if problems.is_empty() {
+        problems = hart::check(&commands, &data.docs);
+    }
     if problems.is_empty() {
         let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("OUT_DIR is not set"))?;
         fs::write(Path::new(&out).join("maps.rs"), emit::maps(&data))?;
+        fs::write(
+            Path::new(&out).join("dop.rs"),
+            dop::emit(&objects, &data.docs),
+        )?;
+        fs::write(
+            Path::new(&out).join("hart.rs"),
+            hart::emit(&commands, &data.docs),
+        )?;
     }
     Ok(problems)
 }

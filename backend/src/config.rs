@@ -3,15 +3,18 @@
 //! Every refusal names the file, the line and what to write instead.
 
 mod check;
+mod profile;
 mod raw;
 #[cfg(test)]
 mod tests;
 
 use shared::device::Device;
+use shared::dop::Profile;
 use shared::frame::Framing;
 use std::fmt;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Where the page is served if nothing else is said.
@@ -189,6 +192,8 @@ pub struct DeviceConfig {
     pub unit: u8,
     /// What it does in the plant.
     pub description: String,
+    /// For a DOP device: what the manual leaves open, as this site has it.
+    pub profile: Option<Arc<Profile>>,
 }
 
 /// Why a configuration is refused.
@@ -247,18 +252,20 @@ impl Config {
             let at = error.span().map_or(0, |s| s.start);
             wrong(at, explain(text, at, error.message()))
         })?;
-        check::check(raw).map_err(|check::Wrong { at, text }| wrong(at, text))
+        let beside = path.parent().unwrap_or(Path::new(""));
+        check::check(raw, beside).map_err(|check::Wrong { at, text }| wrong(at, text))
     }
 
-    /// What is served without a configuration: a plant of three valves that is alive.
+    /// What is served without a configuration: a plant of four valves that is alive.
     #[must_use]
     pub fn simulated() -> Self {
-        let device = |tag: &str, device, unit, description: &str| DeviceConfig {
+        let device = |tag: &str, device: Device, unit, description: &str| DeviceConfig {
             tag: tag.into(),
             device,
             bus: 0,
             unit,
             description: description.into(),
+            profile: (device == Device::Dop).then(crate::sim::dop_profile),
         };
         Self {
             listen: LISTEN,
@@ -283,6 +290,12 @@ impl Config {
                     Device::Icon3000,
                     3,
                     "Tank 2 outlet, isolating valve",
+                ),
+                device(
+                    "MX-301",
+                    Device::Dop,
+                    4,
+                    "Tank 3 inlet, isolating valve with diagnostics",
                 ),
             ],
         }

@@ -6,6 +6,7 @@ use crate::bus::{self, ClientId, Handle, Plug};
 use crate::clock::Clock;
 use crate::config::{Config, DeviceConfig, LineConfig};
 use crate::sim::Actuators;
+use shared::device::Device as Kind;
 use shared::proto::{self, ToPage, VERSION};
 use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::watch;
@@ -139,5 +140,21 @@ impl Plant {
         let device = self.devices.iter().find(|d| d.info.tag == tag)?;
         let (_, handle) = self.buses.get(device.bus)?;
         Some((handle, device.at))
+    }
+
+    /// True if the device with this tag is declared as DOP.
+    #[must_use]
+    pub fn has_objects(&self, tag: &str) -> bool {
+        let found = self.devices.iter().find(|d| d.info.tag == tag);
+        found.is_some_and(|d| d.info.kind == Kind::Dop.key())
+    }
+
+    /// The devices with diagnostic objects: bus, and index on it.
+    pub fn dop_devices(&self) -> impl Iterator<Item = (&Handle, usize)> {
+        let found = self
+            .devices
+            .iter()
+            .filter(|d| d.info.kind == Kind::Dop.key());
+        found.filter_map(|d| Some((&self.buses.get(d.bus)?.1, d.at)))
     }
 }

@@ -5,13 +5,15 @@
 use crate::bus::timing::gap;
 use crate::clock::Clock;
 use crate::config::DeviceConfig;
+use shared::capture::Micros;
 use shared::device::Device;
+use shared::dop::Profile;
 use shared::encode::frame;
 use shared::frame::Framing;
 use shared::frame::check::crc_holds;
 use shared::map::row::Model;
 use shared::pdu::length::{self, Length};
-use shared::sim::{Icon3000, Programme};
+use shared::sim::{Dop, DopSetup, Icon3000, Programme};
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -33,8 +35,54 @@ const NO_TARGET: u8 = 0x0B;
 /// The actuators of one line. Clones are the same actuators.
 #[derive(Clone, Debug)]
 pub struct Actuators {
-    units: Arc<Mutex<Vec<(u8, Icon3000)>>>,
+    units: Arc<Mutex<Vec<(u8, Actuator)>>>,
     clock: Clock,
+}
+
+/// One actuator.
+#[derive(Clone, Debug)]
+enum Actuator {
+    Icon(Box<Icon3000>),
+    Dop(Box<Dop>),
+}
+
+impl Actuator {
+    fn advance(&mut self, now: Micros, wall: u64) {
+        match self {
+            Self::Icon(icon) => icon.advance(now, wall),
+            Self::Dop(dop) => dop.advance(now, wall),
+        }
+    }
+
+    fn overheard(&mut self, sound: bool) {
+        match self {
+            Self::Icon(icon) => icon.overheard(sound),
+            Self::Dop(_) => {}
+        }
+    }
+
+    fn broadcast(&mut self, pdu: &[u8]) {
+        match self {
+            Self::Icon(icon) => icon.broadcast(pdu),
+            // It has nothing that would make sense to set in all units at once.
+            Self::Dop(_) => {}
+        }
+    }
+
+    fn answer(&mut self, pdu: &[u8]) -> Option<Vec<u8>> {
+        match self {
+            Self::Icon(icon) => icon.answer(pdu),
+            Self::Dop(dop) => dop.answer(pdu),
+        }
+    }
+}
+
+/// The profile of the simulated DOP device. Its addresses and names are the simulator's own.
+#[must_use]
+pub fn dop_profile() -> Arc<Profile> {
+    // A test holds that it is valid; if it were not, it would say nothing.
+    let profile = Profile::from_json(include_str!("sim/dop-profile.json"));
+    Arc::new(profile.unwrap_or_default())
 }
 
 /// How fast a simulated line is.
@@ -74,13 +122,27 @@ impl Actuators {
     /// The actuators that a configuration names.
     #[must_use]
     pub fn new<'a>(devices: impl IntoIterator<Item = &'a DeviceConfig>, clock: Clock) -> Self {
+        Self::with(devices, clock, DopSetup::default())
+    }
+
+    /// The same with DOP devices that behave like this.
+    #[must_use]
+    pub fn with<'a>(
+        devices: impl IntoIterator<Item = &'a DeviceConfig>,
+        clock: Clock,
+        setup: DopSetup,
+    ) -> Self {
         let units = devices
             .into_iter()
             .filter_map(|d| {
                 let model = match d.device {
                     Device::Icon3000v2 => Model::Icon3000v2,
                     Device::Icon3000 => Model::Icon3000,
-                    Device::None => return None,
+                    Device::Dop => {
+                        let dop = Box::new(Dop::new(&d.tag, setup));
+                        return Some((d.unit, Actuator::Dop(dop)));
+                    }
+                    _ => return None,
                 };
                 // Control valves modulate, the others go from end to end.
                 let programme = if d.tag.starts_with("FV") || d.tag.starts_with("PV") {
@@ -88,7 +150,8 @@ impl Actuators {
                 } else {
                     Programme::Strokes
                 };
-                Some((d.unit, Icon3000::new(model, &d.tag, programme)))
+                let icon = Box::new(Icon3000::new(model, &d.tag, programme));
+                Some((d.unit, Actuator::Icon(icon)))
             })
             .collect();
         Self {
@@ -255,5 +318,24 @@ async fn connection(mut stream: TcpStream, actuators: &Actuators) -> io::Result<
             let bytes = frame(Framing::Tcp, transaction, unit, &response);
             stream.write_all(&bytes).await?;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The profile names the registers that the simulated device has.
+    #[test]
+    fn the_profile_is_that_of_the_simulator() {
+        let profile = dop_profile();
+        let setup = DopSetup::default();
+        let registers = &profile.registers;
+        assert_eq!(profile.name, "Simulator");
+        assert_eq!(registers.request, Some(setup.request));
+        assert_eq!(registers.indicators, Some(setup.indicators));
+        assert_eq!(registers.status, Some(setup.status));
+        assert_eq!(registers.count, Some(setup.count));
+        assert_eq!(registers.response, Some(setup.response));
     }
 }

@@ -264,6 +264,7 @@ fn handle(framing: Framing, device: Device, stream: DuplexStream) -> Handle {
         bus: 0,
         unit: UNIT,
         description: String::new(),
+        profile: None,
     }];
     let (clock, activity) = (Clock::start(), watch::Sender::new(0));
     let board = Board::new(activity.clone());

@@ -13,6 +13,7 @@ use crate::live::Live;
 use crate::pages::decode::DecodePage;
 use crate::pages::device::DeviceRoute;
 use crate::pages::devices::DevicesPage;
+use crate::pages::dop::DopPage;
 use crate::pages::settings::SettingsPage;
 use crate::pages::traffic::TrafficPage;
 use crate::router::Router;
@@ -26,6 +27,7 @@ enum Page {
     Decode,
     Devices,
     Device,
+    Dop,
     Traffic,
     Settings,
 }
@@ -41,6 +43,7 @@ pub fn App() -> impl IntoView {
     on_action(move |action| {
         let screen = match action {
             Action::Decode => Screen::Decode,
+            Action::Dop => Screen::Dop(String::new()),
             Action::Devices => Screen::Devices,
             Action::Traffic => Screen::Traffic(None),
             Action::Settings => Screen::Settings,
@@ -53,6 +56,7 @@ pub fn App() -> impl IntoView {
         Screen::Decode => Page::Decode,
         Screen::Devices => Page::Devices,
         Screen::Device(..) => Page::Device,
+        Screen::Dop(_) => Page::Dop,
         Screen::Traffic(_) => Page::Traffic,
         Screen::Settings => Page::Settings,
     });
@@ -71,6 +75,7 @@ pub fn App() -> impl IntoView {
                 Page::Decode => view! { <DecodePage/> }.into_any(),
                 Page::Devices => view! { <DevicesPage/> }.into_any(),
                 Page::Device => view! { <DeviceRoute/> }.into_any(),
+                Page::Dop => view! { <DopPage/> }.into_any(),
                 Page::Traffic => view! { <TrafficPage/> }.into_any(),
                 Page::Settings => view! { <SettingsPage/> }.into_any(),
             }}

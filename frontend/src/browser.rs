@@ -109,6 +109,18 @@ pub fn focus(selector: &str) {
     }
 }
 
+/// Calls `act` for events with these names, as long as the element lives.
+pub fn listen(element: &web_sys::Element, names: &[&str], act: impl Fn(&web_sys::Event) + 'static) {
+    let closure = Closure::<dyn Fn(web_sys::Event)>::new(move |event| act(&event));
+    for name in names {
+        // Fails only for listeners that are none.
+        let _infallible =
+            element.add_event_listener_with_callback(name, closure.as_ref().unchecked_ref());
+    }
+    // Lives until the element does not.
+    closure.forget();
+}
+
 /// Scrolls an element into view with the least movement.
 pub fn reveal(element: &web_sys::Element) {
     let options = web_sys::ScrollIntoViewOptions::new();
@@ -128,9 +140,12 @@ pub fn provide_narrow() {
     let narrow = RwSignal::new(query.as_ref().is_some_and(web_sys::MediaQueryList::matches));
     if let Some(query) = query {
         let again = query.clone();
-        let listener = Closure::<dyn Fn()>::new(move || narrow.set(again.matches()));
+        let listener = Closure::<dyn Fn()>::new(move || {
+            // Gone with a program that was closed.
+            let _gone = narrow.try_set(again.matches());
+        });
         query.set_onchange(Some(listener.as_ref().unchecked_ref()));
-        // The page lives as long as its window.
+        // It costs little, and the page lives as long as its window.
         listener.forget();
     }
     provide_context(Narrow(narrow));

@@ -7,6 +7,7 @@ use leptos::task::spawn_local;
 use shared::device::Device;
 use shared::frame::Framing;
 
+use crate::format::within;
 use crate::state::findings::Findings;
 use crate::state::load::{Loader, Rescan};
 use crate::state::samples::Sample;
@@ -43,7 +44,7 @@ impl Progress {
         reason = "a part of 1 becomes 0 to 100"
     )]
     pub fn percent(&self) -> u8 {
-        (self.done.clamp(0.0, 1.0) * 100.0) as u8
+        (within(self.done, 0.0, 1.0) * 100.0) as u8
     }
 }
 

@@ -63,6 +63,11 @@ impl Router {
         let _infallible = location().set_hash(&route.to_string());
     }
 
+    /// The same for an address as text, from `#` on.
+    pub fn go_to(self, hash: &str) {
+        let _infallible = location().set_hash(hash);
+    }
+
     /// Changes a setting of this screen in the address, without a new entry in the history.
     pub fn set(self, key: &str, value: &str) {
         let next = self.peek().with(key, value);

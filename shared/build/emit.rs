@@ -4,23 +4,66 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 use crate::types::{
-    ACCESS, Data, Device, Doc, File, LEVELS, Member, Model, Row, SETTLED, TABLES, TRUST, Word,
+    ACCESS, Data, Device, Doc, EXTENTS, File, LEVELS, Member, Model, Row, SETTLED, TABLES, TRUST,
+    Word,
 };
 
 /// The text of `maps.rs`.
 pub fn maps(data: &Data) -> String {
     let mut out = String::from("// Written by shared/build.rs from shared/data.\n\n");
+    // Writing to a String cannot fail.
+    let _ = models(data, &mut out);
     for device in &data.devices {
-        // Writing to a String cannot fail.
         let _ = device_tables(device, &data.docs, &mut out);
     }
     out
+}
+
+/// The enumeration of all models.
+fn models(data: &Data, out: &mut String) -> fmt::Result {
+    let models: Vec<_> = data.devices.iter().flat_map(|d| &d.models).collect();
+    writeln!(
+        out,
+        "/// The models that have a map; in a line of descent a later one has what the earlier ones have.\n\
+         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\npub enum Model {{"
+    )?;
+    for m in &models {
+        writeln!(out, "    /// {}.\n    {},", m.name, variant(&m.key))?;
+    }
+    writeln!(out, "}}\n\nimpl Model {{\n    /// All models.")?;
+    writeln!(out, "    pub const ALL: [Self; {}] = [", models.len())?;
+    for m in &models {
+        writeln!(out, "        Self::{},", variant(&m.key))?;
+    }
+    writeln!(
+        out,
+        "    ];\n\n    /// The word used in JSON, configuration and the command line.\n    #[must_use]\n    \
+         pub const fn key(self) -> &'static str {{\n        match self {{"
+    )?;
+    for m in &models {
+        writeln!(out, "            Self::{} => {:?},", variant(&m.key), m.key)?;
+    }
+    writeln!(
+        out,
+        "        }}\n    }}\n\n    /// Its map.\n    #[must_use]\n    \
+         pub fn map(self) -> &'static DeviceMap {{\n        match self {{"
+    )?;
+    for m in &models {
+        writeln!(
+            out,
+            "            Self::{} => &{},",
+            variant(&m.key),
+            screaming(&m.key)
+        )?;
+    }
+    writeln!(out, "        }}\n    }}\n}}\n")
 }
 
 fn device_tables(device: &Device, docs: &[Doc], out: &mut String) -> fmt::Result {
     let prefix = screaming(&device.key);
     sets(device, &prefix, out)?;
     readings(device, &prefix, out)?;
+    functions(device, docs, &prefix, out)?;
     writeln!(
         out,
         "static {prefix}_ROWS: [Row; {}] = [",
@@ -38,15 +81,18 @@ fn device_tables(device: &Device, docs: &[Doc], out: &mut String) -> fmt::Result
     Ok(())
 }
 
-/// `esd_action` → `ESD_ACTION`.
+/// `esd_action` → `ESD_ACTION`, `ddc100-mx` → `DDC100_MX`.
 fn screaming(key: &str) -> String {
-    key.to_ascii_uppercase()
+    key.replace('-', "_").to_ascii_uppercase()
 }
 
-/// `icon3000v2` → `Icon3000v2`, the variant of `map::Model`.
+/// `icon3000v2` → `Icon3000v2`, `ddc100-mx` → `Ddc100Mx`, the variant of `map::Model`.
 fn variant(key: &str) -> String {
-    let (first, rest) = key.split_at_checked(1).unwrap_or((key, ""));
-    format!("{}{rest}", first.to_ascii_uppercase())
+    let capital = |part: &str| {
+        let (first, rest) = part.split_at_checked(1).unwrap_or((part, ""));
+        format!("{}{rest}", first.to_ascii_uppercase())
+    };
+    key.split('-').map(capital).collect()
 }
 
 fn name(words: &[Word], position: usize) -> &'static str {
@@ -78,8 +124,8 @@ fn sets(device: &Device, prefix: &str, out: &mut String) -> fmt::Result {
             };
             writeln!(
                 out,
-                "        Member {{ value: {}, key: {:?}, label: {:?}, states: {states} }},",
-                m.value, m.key, m.label
+                "        Member {{ value: {}, last: {}, key: {:?}, label: {:?}, states: {states} }},",
+                m.value, m.last, m.key, m.label
             )?;
         }
         writeln!(out, "    ],\n}};\n")?;
@@ -96,6 +142,26 @@ fn readings(device: &Device, prefix: &str, out: &mut String) -> fmt::Result {
             out,
             "    Reading {{ id: {:?}, settled: Settled::{settled}, text: {:?} }},",
             r.id, r.text
+        )?;
+    }
+    writeln!(out, "];\n")
+}
+
+fn functions(device: &Device, docs: &[Doc], prefix: &str, out: &mut String) -> fmt::Result {
+    let count = device.functions.len();
+    writeln!(out, "static {prefix}_FUNCTIONS: [Function; {count}] = [")?;
+    for f in &device.functions {
+        let part = format!("{}, p. {}", f.part, f.page.unwrap_or_default());
+        writeln!(
+            out,
+            "    Function {{ code: {}, sub: {:?}, label: {:?}, note: {:?}, \
+             source: Source {{ doc: {:?}, part: {part:?} }}, reading: {} }},",
+            f.code,
+            f.sub,
+            f.label,
+            f.note,
+            doc_name(docs, &f.doc),
+            reading(device, prefix, &f.reading),
         )?;
     }
     writeln!(out, "];\n")
@@ -124,17 +190,17 @@ fn write_row(
         (Some(min), Some(max)) => format!("Some(({min}, {max}))"),
         _ => "None".to_owned(),
     };
-    let since = device
-        .models
-        .get(row.since)
-        .map_or(String::new(), |m| variant(&m.key));
+    let since = row.since.and_then(|since| device.models.get(since));
+    let since = since.map_or("None".to_owned(), |m| {
+        format!("Some(Model::{})", variant(&m.key))
+    });
     let page = row.page.unwrap_or_default();
     let part = format!("{}, p. {page}", file.part);
     writeln!(
         out,
         "    Row {{ table: Table::{}, address: Address::new({}), words: {}, key: {:?}, label: {:?}, \
          kind: Kind::{}, scale: {scale}, unit: {:?}, set: {set}, access: Access::{}, level: {level}, \
-         range: {range}, group: {:?}, since: Model::{since}, note: {:?}, \
+         range: {range}, group: {:?}, since: {since}, note: {:?}, \
          source: Source {{ doc: {:?}, part: {part:?} }}, trust: Trust::{}, reading: {} }},",
         name(TABLES, file.table),
         row.address,
@@ -197,13 +263,13 @@ fn map(
         rows.sort_by_key(|(_, row)| row.address);
         for (index, row) in rows {
             let key = (table as u32) << 16 | u32::from(row.address);
-            if row.since <= position {
+            let later = row.since.filter(|since| *since > position);
+            let Some(later) = later else {
                 keys.push(key);
                 items.push(format!("&{prefix}_ROWS[{index}]"));
                 continue;
-            }
-            let (Some(since), Some(file)) =
-                (device.models.get(row.since), device.files.get(row.file))
+            };
+            let (Some(since), Some(file)) = (device.models.get(later), device.files.get(row.file))
             else {
                 continue;
             };
@@ -243,6 +309,22 @@ fn map(
         variant(&model.key),
         model.name
     )?;
+    let known = device.functions.iter().enumerate();
+    let known = known.filter(|(_, f)| (f.first..=f.last).contains(&position));
+    let codes = known
+        .clone()
+        .filter(|(_, f)| f.sub.is_none())
+        .fold(0_u128, |codes, (_, f)| codes | 1 << f.code);
+    writeln!(
+        out,
+        "    whole: {}, last_unit: {}, codes: {codes:#x}, functions: &[",
+        name(EXTENTS, model.extent),
+        model.units
+    )?;
+    for (index, _) in known {
+        writeln!(out, "        &{prefix}_FUNCTIONS[{index}],")?;
+    }
+    writeln!(out, "    ],")?;
     writeln!(out, "    readings: &{prefix}_READINGS, rows: &[")?;
     for item in items {
         writeln!(out, "        {item},")?;
@@ -262,7 +344,7 @@ fn write_gap(
         "    Row {{ table: Table::{}, address: Address::new({start}), words: {}, \
          key: \"absent_{start}\", label: {:?}, kind: Kind::Reserved, scale: Scale::ONE, unit: \"\", \
          set: None, access: Access::Absent, level: None, range: None, group: \"Reserved\", \
-         since: Model::{}, note: \"\", source: Source {{ doc: {:?}, part: {:?} }}, \
+         since: Some(Model::{}), note: \"\", source: Source {{ doc: {:?}, part: {:?} }}, \
          trust: Trust::Reading, reading: {} }},",
         name(TABLES, gap.file.table),
         gap.end.saturating_sub(u32::from(gap.start)),

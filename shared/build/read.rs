@@ -6,8 +6,8 @@ use std::path::Path;
 use std::str::FromStr;
 
 use crate::types::{
-    ACCESS, At, Data, Device, Doc, File, KINDS, LEVELS, Member, Model, Problem, Reading, Row,
-    SETTLED, Scale, TABLES, TRUST, Word,
+    ACCESS, At, Data, Device, Doc, EXTENTS, File, Function, KINDS, LEVELS, Member, Model, Problem,
+    Reading, Row, SETTLED, Scale, TABLES, TRUST, Word,
 };
 
 /// Reads `SOURCES.md` and every folder that has a `models.csv`.
@@ -62,8 +62,13 @@ fn device(folder: &Path, problems: &mut Vec<Problem>) -> io::Result<Device> {
             absent: line.text("absent", problems),
             part: line.text("part", problems),
             reading: line.text("reading", problems),
+            extent: line.word("extent", EXTENTS, problems),
+            units: line.number("units", problems),
             at: line.at,
         });
+    }
+    for line in Line::all(&folder.join("functions.csv"), problems)? {
+        d.functions.push(function(line, &d.models, problems));
     }
     for line in Line::all(&folder.join("files.csv"), problems)? {
         d.files.push(File {
@@ -83,10 +88,13 @@ fn device(folder: &Path, problems: &mut Vec<Problem>) -> io::Result<Device> {
     }
     for (name, bits) in [("enums.csv", false), ("bits.csv", true)] {
         for line in Line::all(&folder.join(name), problems)? {
+            let column = if bits { "bit" } else { "value" };
+            let (value, last) = line.parsed(column, codes, problems);
             d.members.push(Member {
                 set: line.text("set", problems),
                 bits,
-                value: line.number(if bits { "bit" } else { "value" }, problems),
+                value,
+                last,
                 key: line.text("key", problems),
                 label: line.text("label", problems),
                 zero: if bits {
@@ -114,12 +122,36 @@ fn device(folder: &Path, problems: &mut Vec<Problem>) -> io::Result<Device> {
     Ok(d)
 }
 
+fn function(line: Line, models: &[Model], problems: &mut Vec<Problem>) -> Function {
+    Function {
+        code: line.number("function", problems),
+        sub: line.optional("sub", |cell| cell.parse().ok(), problems),
+        label: line.text("label", problems),
+        first: line.model("first", models, problems),
+        last: line.model("last", models, problems),
+        doc: line.text("doc", problems),
+        part: line.text("part", problems),
+        page: line.optional("page", |cell| cell.parse().ok(), problems),
+        note: line.text("note", problems),
+        reading: line.text("reading", problems),
+        at: line.at,
+    }
+}
+
+/// `5`, or `19200-19300` for a run of codes.
+fn codes(cell: &str) -> Option<(u16, u16)> {
+    let (first, last) = cell.split_once('-').unwrap_or((cell, cell));
+    Some((first.parse().ok()?, last.parse().ok()?))
+}
+
 fn row(line: Line, file: usize, models: &[Model], problems: &mut Vec<Problem>) -> Row {
     let kind = line.text("type", problems);
     let kind = KINDS.iter().find(|k| k.key == kind).unwrap_or_else(|| {
         problems.push(line.unreadable("type", &kind));
         &KINDS[0]
     });
+    // Models are a line of descent, or each row says which it belongs to.
+    let listed = line.has("models");
     Row {
         file,
         address: line.number("address", problems),
@@ -139,7 +171,12 @@ fn row(line: Line, file: usize, models: &[Model], problems: &mut Vec<Problem>) -
         min: line.optional("min", |cell| cell.parse().ok(), problems),
         max: line.optional("max", |cell| cell.parse().ok(), problems),
         group: line.text("group", problems),
-        since: line.model("since", models, problems),
+        since: (!listed).then(|| line.model("since", models, problems)),
+        models: if listed {
+            line.models("models", models, problems)
+        } else {
+            Vec::new()
+        },
         page: line.optional("page", |cell| cell.parse().ok(), problems),
         note: line.text("note", problems),
         reading: line.text("reading", problems),
@@ -250,11 +287,35 @@ impl Line {
     }
 
     fn number<T: FromStr + Default>(&self, column: &str, problems: &mut Vec<Problem>) -> T {
+        self.parsed(column, |cell| cell.parse().ok(), problems)
+    }
+
+    fn parsed<T: Default>(
+        &self,
+        column: &str,
+        parse: impl Fn(&str) -> Option<T>,
+        problems: &mut Vec<Problem>,
+    ) -> T {
         let cell = self.text(column, problems);
-        cell.parse().unwrap_or_else(|_| {
+        parse(&cell).unwrap_or_else(|| {
             problems.push(self.unreadable(column, &cell));
             T::default()
         })
+    }
+
+    fn has(&self, column: &str) -> bool {
+        self.header.iter().any(|name| name == column)
+    }
+
+    /// Positions of the models that a cell lists.
+    fn models(&self, column: &str, models: &[Model], problems: &mut Vec<Problem>) -> Vec<usize> {
+        let cell = self.text(column, problems);
+        let known = |key: &str| models.iter().position(|m| m.key == key);
+        let found: Vec<_> = cell.split_whitespace().filter_map(known).collect();
+        if found.len() != cell.split_whitespace().count() {
+            problems.push(self.unreadable(column, &cell));
+        }
+        found
     }
 
     /// Position of the cell in a list of words.

@@ -7,19 +7,21 @@
 //! | R02 | keys are lower snake case and unique within the table of a model |
 //! | R03 | every row has a page, every file a known document |
 //! | R04 | a named set exists and suits the type; every set is used |
-//! | R05 | codes of a set are unique; each lies in the range of some row, and each code of a range has a name |
+//! | R05 | codes of a set are unique; each lies in the range of some row, and each code of a range has a name; codes with gaps need no range; a run of codes has `{}` in its label |
 //! | R06 | a scale stands only on numbers and is not zero |
 //! | R07 | the unit is a known one and stands only on numbers |
 //! | R08 | the number of words fits the type, and the address space |
 //! | R09 | `min` and `max` come together, in order, and fit the type |
 //! | R10 | trust is `reading` exactly where a reading is named; readings exist and are used |
-//! | R11 | a writable holding register has a user level |
+//! | R11 | a writable holding register has a user level, if the device has levels |
 //! | R12 | bits of a set are unique and fit the words of the rows that use it |
 //! | R13 | reserved rows are read-only, bits and registers of read-only tables too |
 //! | R14 | no blanks around labels, notes and groups; labels and groups are not empty |
 //! | R15 | a reading mentioned in a note exists |
 //! | R16 | a bit names both of its states or none |
 //! | R17 | a group has at least two rows (a single one is a misspelt group) |
+//! | R18 | the models of a row are among those of its file |
+//! | R19 | functions are unique for each model; only FC 08 has sub-functions; each has a page and a known document |
 
 use std::collections::BTreeSet;
 
@@ -48,6 +50,12 @@ impl Findings {
     }
 }
 
+impl From<Findings> for Vec<Problem> {
+    fn from(found: Findings) -> Self {
+        found.0
+    }
+}
+
 /// All violations, in no particular order of importance.
 pub fn check(data: &Data) -> Vec<Problem> {
     let mut found = Findings::default();
@@ -62,6 +70,8 @@ pub fn check(data: &Data) -> Vec<Problem> {
         sets::check(device, &mut found);
         readings(device, &mut found);
         groups(device, &mut found);
+        models(device, &mut found);
+        functions(device, &data.docs, &mut found);
     }
     found.0
 }
@@ -182,7 +192,8 @@ fn shape(row: &Row, found: &mut Findings) {
 /// R11, R13.
 fn access(device: &Device, row: &Row, found: &mut Findings) {
     let table = device.table_of(row);
-    let needs_level = table == "holding" && row.is_writable();
+    let has_levels = device.rows.iter().any(|r| r.level.is_some());
+    let needs_level = has_levels && table == "holding" && row.is_writable();
     found.unless(
         !needs_level || row.level.is_some(),
         "R11",
@@ -217,11 +228,10 @@ fn readings(device: &Device, found: &mut Findings) {
     let known: BTreeSet<&str> = device.readings.iter().map(|r| r.id.as_str()).collect();
     let mut used = BTreeSet::new();
     let absent = device.models.iter().filter(|m| !m.reading.is_empty());
-    let cited = device.rows.iter().filter(|r| !r.reading.is_empty());
-    for (at, id) in absent
-        .map(|m| (&m.at, &m.reading))
-        .chain(cited.map(|r| (&r.at, &r.reading)))
-    {
+    let rows = device.rows.iter().map(|r| (&r.at, &r.reading));
+    let functions = device.functions.iter().map(|f| (&f.at, &f.reading));
+    let cited = rows.chain(functions).filter(|(_, id)| !id.is_empty());
+    for (at, id) in absent.map(|m| (&m.at, &m.reading)).chain(cited) {
         found.unless(
             known.contains(id.as_str()),
             "R10",
@@ -230,11 +240,12 @@ fn readings(device: &Device, found: &mut Findings) {
         );
         used.insert(id.as_str());
     }
+    let prefix = device.readings.first().map_or("", |r| letters(&r.id));
     for row in &device.rows {
         let trusted = TRUST.get(row.trust).is_some_and(|t| t.0 == "reading");
         let text = "trust and reading disagree";
         found.unless(trusted != row.reading.is_empty(), "R10", &row.at, text);
-        for id in mentioned(&row.note) {
+        for id in mentioned(&row.note, prefix) {
             found.unless(
                 known.contains(id),
                 "R15",
@@ -255,13 +266,15 @@ fn readings(device: &Device, found: &mut Findings) {
     }
 }
 
-/// The reading ids in a note: words of `E` and two digits.
-fn mentioned(note: &str) -> impl Iterator<Item = &str> {
+/// The letters that an id begins with.
+fn letters(id: &str) -> &str {
+    id.trim_end_matches(|c: char| c.is_ascii_digit())
+}
+
+/// The reading ids in a note: words of the letters of this device's ids, and digits.
+fn mentioned<'a>(note: &'a str, prefix: &'a str) -> impl Iterator<Item = &'a str> {
     note.split(|c: char| !c.is_ascii_alphanumeric())
-        .filter(|word| {
-            word.strip_prefix('E')
-                .is_some_and(|n| n.len() == 2 && n.bytes().all(|b| b.is_ascii_digit()))
-        })
+        .filter(move |word| !prefix.is_empty() && *word != prefix && letters(word) == prefix)
 }
 
 /// R17.
@@ -274,5 +287,41 @@ fn groups(device: &Device, found: &mut Findings) {
             &row.at,
             format!("group {:?} has one row", row.group),
         );
+    }
+}
+
+/// R18.
+fn models(device: &Device, found: &mut Findings) {
+    for row in &device.rows {
+        let Some(file) = device.files.get(row.file) else {
+            continue;
+        };
+        let inside = row
+            .models
+            .iter()
+            .all(|m| (file.first..=file.last).contains(m));
+        let text = format!("a model that {} is not for", file.file);
+        found.unless(inside, "R18", &row.at, text);
+    }
+}
+
+/// R19.
+fn functions(device: &Device, docs: &[Doc], found: &mut Findings) {
+    let mut seen = BTreeSet::new();
+    for f in &device.functions {
+        let at = &f.at;
+        for model in f.first..=f.last {
+            let new = seen.insert((model, f.code, f.sub));
+            found.unless(new, "R19", at, format!("{} is there twice", f.code));
+        }
+        let sub = f.sub.is_none() || f.code == 8;
+        found.unless(sub, "R19", at, format!("{} has no sub-functions", f.code));
+        let known = docs.iter().any(|d| d.key == f.doc);
+        found.unless(known, "R19", at, format!("unknown document {:?}", f.doc));
+        let placed = f.page.is_some() && !f.part.is_empty() && f.first <= f.last;
+        found.unless(placed, "R19", at, "no page, no part or no model");
+        found.unless(f.code < 0x80, "R19", at, "no function code");
+        let named = !f.label.is_empty() && f.label.trim() == f.label && f.note.trim() == f.note;
+        found.unless(named, "R19", at, "no label, or blanks around it");
     }
 }

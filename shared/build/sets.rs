@@ -13,12 +13,21 @@ pub fn check(device: &Device, found: &mut Findings) {
         let rule = if member.bits { "R12" } else { "R05" };
         let unique = !set
             .iter()
-            .any(|m| m.value == member.value || m.key == member.key);
+            .any(|m| (m.value <= member.last && member.value <= m.last) || m.key == member.key);
         found.unless(
             unique,
             rule,
             &member.at,
             format!("{} is there twice", member.value),
+        );
+        let run = member.value < member.last;
+        found.unless(
+            member.value <= member.last
+                && run == member.label.contains("{}")
+                && !(run && member.bits),
+            rule,
+            &member.at,
+            "a run of codes, and nothing else, has {} in its label",
         );
         found.unless(
             member.zero.is_empty() == member.one.is_empty(),
@@ -71,10 +80,16 @@ fn named(row: &Row, members: &[&Member], found: &mut Findings) {
         return;
     }
     let (Some(min), Some(max)) = (row.min, row.max) else {
-        return found.add("R05", &row.at, "a row of codes has a range");
+        let starts = |code: i32| members.iter().any(|m| i32::from(m.value) == code);
+        let ends = members.iter().filter(|m| !starts(i32::from(m.last) + 1));
+        // One stretch of codes is a range that was forgotten.
+        let text = "a row of codes without gaps has a range";
+        return found.unless(ends.count() > 1, "R05", &row.at, text);
     };
     for code in min..=max {
-        let known = members.iter().any(|m| i32::from(m.value) == code);
+        let known = members
+            .iter()
+            .any(|m| (i32::from(m.value)..=i32::from(m.last)).contains(&code));
         found.unless(
             known,
             "R05",

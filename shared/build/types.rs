@@ -48,8 +48,9 @@ pub struct Doc {
 pub struct Device {
     /// Name of the folder.
     pub key: String,
-    /// Oldest first: a model has what the ones before it have.
+    /// Oldest first where a model has what the ones before it have.
     pub models: Vec<Model>,
+    pub functions: Vec<Function>,
     pub files: Vec<File>,
     pub rows: Vec<Row>,
     pub members: Vec<Member>,
@@ -62,7 +63,7 @@ impl Device {
         let in_map = |row: &Row| {
             self.files.get(row.file).is_some_and(|file| {
                 file.table == table && (file.first..=file.last).contains(&model)
-            })
+            }) && (row.models.is_empty() || row.models.contains(&model))
         };
         self.rows
             .iter()
@@ -90,6 +91,26 @@ pub struct Model {
     /// Label, source part and reading of the addresses that older models lack.
     pub absent: String,
     pub part: String,
+    pub reading: String,
+    /// Whether the device has more than its map.
+    pub extent: usize,
+    /// Highest unit address.
+    pub units: u8,
+}
+
+/// A line of `functions.csv`. Models are positions in [`Device::models`].
+#[derive(Debug)]
+pub struct Function {
+    pub at: At,
+    pub code: u8,
+    pub sub: Option<u16>,
+    pub label: String,
+    pub first: usize,
+    pub last: usize,
+    pub doc: String,
+    pub part: String,
+    pub page: Option<u16>,
+    pub note: String,
     pub reading: String,
 }
 
@@ -124,7 +145,10 @@ pub struct Row {
     pub min: Option<i32>,
     pub max: Option<i32>,
     pub group: String,
-    pub since: usize,
+    /// `None` where the models are no line of descent.
+    pub since: Option<usize>,
+    /// Models that have it, empty for all of the file.
+    pub models: Vec<usize>,
     pub page: Option<u16>,
     pub note: String,
     pub reading: String,
@@ -163,6 +187,8 @@ pub struct Member {
     pub set: String,
     pub bits: bool,
     pub value: u16,
+    /// Last code of a run, otherwise the same.
+    pub last: u16,
     pub key: String,
     pub label: String,
     pub zero: String,
@@ -241,7 +267,14 @@ pub const TABLES: &[Word] = &[
     ("holding", "Holding"),
 ];
 /// Who may write.
-pub const ACCESS: &[Word] = &[("r", "Read"), ("rw", "Write"), ("rw!", "WriteGuarded")];
+pub const ACCESS: &[Word] = &[
+    ("r", "Read"),
+    ("rw", "Write"),
+    ("rw!", "WriteGuarded"),
+    ("w!", "WriteOnly"),
+];
+/// Whether a map is all that its device has.
+pub const EXTENTS: &[Word] = &[("whole", "true"), ("part", "false")];
 /// User levels.
 pub const LEVELS: &[Word] = &[
     ("observer", "Observer"),

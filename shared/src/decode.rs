@@ -55,6 +55,12 @@ pub fn decode_into(
         Framing::Rtu => rtu(frame, bytes, request, context, out),
         Framing::Ascii => ascii(frame, bytes, request, context, out),
         Framing::Tcp => tcp(frame, bytes, request, context, out),
+        #[cfg(feature = "hart")]
+        Framing::Hart => {
+            crate::hart::decode::frame(frame.marks, bytes, request, context.device, out);
+        }
+        #[cfg(feature = "hart")]
+        Framing::HartIp => crate::hart::ip::message(bytes, request, context.device, out),
     }
     if frame.marks.has(Marks::AMBIGUOUS) {
         out.problem(Problem::new(Finding::Ambiguous, Place::new(0, bytes.len())));
@@ -80,6 +86,9 @@ pub fn pdu_of(frame: &[u8], framing: Framing) -> Option<Vec<u8>> {
             .get(1..frame.len().checked_sub(2)?)
             .map(<[u8]>::to_vec),
         Framing::Tcp => frame.get(7..).map(<[u8]>::to_vec),
+        // A command is no PDU of Modbus.
+        #[cfg(feature = "hart")]
+        Framing::Hart | Framing::HartIp => None,
         Framing::Ascii => {
             let payload = Payload::of(frame);
             let bytes = payload.bytes();
@@ -99,7 +108,7 @@ fn rtu(frame: &Frame, bytes: &[u8], request: Option<&[u8]>, context: &Context, o
     };
     let asked = request.and_then(|r| r.get(1..r.len().saturating_sub(2)));
     let mut reader = Reader::new(body, 0, Layout::Plain);
-    unit(frame, &mut reader, out, 247);
+    unit(frame, &mut reader, out, context.device.last_unit());
     pdu(frame, reader, asked, context, out);
     let place = Place::new(body.len(), 2);
     if let Some(check) = check {
@@ -185,7 +194,7 @@ fn ascii(
         _ => (None, payload.bytes()),
     };
     let mut reader = Reader::new(body, 0, Layout::HexPairs);
-    unit(frame, &mut reader, out, 247);
+    unit(frame, &mut reader, out, context.device.last_unit());
     pdu(frame, reader, asked, context, out);
     let place = Layout::HexPairs.place(body.len(), 1);
     if let Some(got) = sent {
@@ -289,7 +298,7 @@ fn unit(frame: &Frame, reader: &mut Reader<'_>, out: &mut Decoded, last: u8) {
         return;
     };
     let value = match unit {
-        0 if last == 247 => Value::Named(0, Some("Broadcast")),
+        0 if last != 255 => Value::Named(0, Some("Broadcast")),
         _ => Value::Number {
             raw: i64::from(unit),
             scale: Scale::ONE,

@@ -2,6 +2,50 @@
 
 use crate::map::row::{DeviceMap, Model};
 
+/// Rotork actuators that take a HART field unit; their status bits differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// CVA range: CVL linear, CVQ quarter-turn.
+    Cva,
+    /// IQ3 and IQ3 Pro, multi-turn and part-turn.
+    Iq,
+    /// CMA range: linear, quarter-turn, rotary.
+    Cma,
+    /// CK range with Atronik or Centronik controls.
+    Ck,
+    /// SI3 and SI4, fluid power.
+    Si,
+}
+
+impl Family {
+    /// All families.
+    pub const ALL: [Self; 5] = [Self::Cva, Self::Iq, Self::Cma, Self::Ck, Self::Si];
+
+    /// The word used on the command line and in JSON.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Cva => "rotork-cva",
+            Self::Iq => "rotork-iq",
+            Self::Cma => "rotork-cma",
+            Self::Ck => "rotork-ck",
+            Self::Si => "rotork-si",
+        }
+    }
+
+    /// The name shown to people.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Cva => "Rotork CVA",
+            Self::Iq => "Rotork IQ",
+            Self::Cma => "Rotork CMA",
+            Self::Ck => "Rotork CK",
+            Self::Si => "Rotork SI",
+        }
+    }
+}
+
 /// What is at the other end, as far as decoding needs to know.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Device {
@@ -12,11 +56,33 @@ pub enum Device {
     Icon3000,
     /// Biffi ICON3000v2 (Modbus interface firmware 4.00 or later).
     Icon3000v2,
+    /// Limitorque MX or QX, series B, with the diagnostics object protocol (DOP). Which registers
+    /// serve it is in the profile of the site; its other registers are shown as raw numbers.
+    Dop,
+    /// Limitorque MX/DDC: the field unit of an actuator, DDC-100 network.
+    Ddc100Mx,
+    /// Limitorque UEC-3-DDC: the field unit of an actuator, DDC-100 network.
+    Ddc100Uec,
+    /// Limitorque DDC-100 clamshell field unit.
+    Ddc100Clamshell,
+    /// Limitorque DDC-100 I/O module in non-valve service.
+    Ddc100Io,
+    /// A Rotork actuator with a HART field unit.
+    Rotork(Family),
 }
 
 impl Device {
-    /// All choices.
-    pub const ALL: [Self; 3] = [Self::Icon3000v2, Self::Icon3000, Self::None];
+    /// All choices on a Modbus line.
+    pub const ALL: [Self; 8] = [
+        Self::Icon3000v2,
+        Self::Icon3000,
+        Self::Ddc100Mx,
+        Self::Ddc100Uec,
+        Self::Ddc100Clamshell,
+        Self::Ddc100Io,
+        Self::Dop,
+        Self::None,
+    ];
 
     /// The word used on the command line, in the configuration and in JSON.
     #[must_use]
@@ -25,6 +91,12 @@ impl Device {
             Self::None => "none",
             Self::Icon3000 => "icon3000",
             Self::Icon3000v2 => "icon3000v2",
+            Self::Dop => "dop",
+            Self::Rotork(family) => family.key(),
+            Self::Ddc100Mx => "ddc100-mx",
+            Self::Ddc100Uec => "ddc100-uec",
+            Self::Ddc100Clamshell => "ddc100-clamshell",
+            Self::Ddc100Io => "ddc100-io",
         }
     }
 
@@ -35,22 +107,55 @@ impl Device {
             Self::None => "No device map",
             Self::Icon3000 => "Biffi ICON3000",
             Self::Icon3000v2 => "Biffi ICON3000v2",
+            Self::Dop => "Limitorque DOP",
+            Self::Rotork(family) => family.label(),
+            Self::Ddc100Mx => "Limitorque DDC-100 MX",
+            Self::Ddc100Uec => "Limitorque DDC-100 UEC-3",
+            Self::Ddc100Clamshell => "Limitorque DDC-100 Clamshell",
+            Self::Ddc100Io => "Limitorque DDC-100 I/O Module",
         }
     }
 
     /// The device with this [`key`](Self::key).
     #[must_use]
     pub fn from_key(key: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|d| d.key() == key)
+        let rotork = Family::ALL.into_iter().map(Self::Rotork);
+        Self::ALL.into_iter().chain(rotork).find(|d| d.key() == key)
     }
 
     /// Its map.
     #[must_use]
     pub fn map(self) -> Option<&'static DeviceMap> {
         match self {
-            Self::None => None,
+            Self::None | Self::Dop | Self::Rotork(_) => None,
             Self::Icon3000 => Some(Model::Icon3000.map()),
             Self::Icon3000v2 => Some(Model::Icon3000v2.map()),
+            Self::Ddc100Mx => Some(Model::Ddc100Mx.map()),
+            Self::Ddc100Uec => Some(Model::Ddc100Uec.map()),
+            Self::Ddc100Clamshell => Some(Model::Ddc100Clamshell.map()),
+            Self::Ddc100Io => Some(Model::Ddc100Io.map()),
+        }
+    }
+
+    /// The highest unit address that it can be given: that of the standard, unless its manual goes
+    /// beyond.
+    #[must_use]
+    pub fn last_unit(self) -> u8 {
+        self.map().map_or(247, |map| map.last_unit)
+    }
+
+    /// True for a device with diagnostic objects.
+    #[must_use]
+    pub const fn is_dop(self) -> bool {
+        matches!(self, Self::Dop)
+    }
+
+    /// The family of a Rotork actuator.
+    #[must_use]
+    pub const fn family(self) -> Option<Family> {
+        match self {
+            Self::Rotork(family) => Some(family),
+            _ => None,
         }
     }
 
@@ -61,14 +166,8 @@ impl Device {
     }
 
     /// False if the manual says that the device refuses this function code.
-    ///
-    /// Source: VCIOM-16345-EN, table 6; FC 20 only on the ICON3000v2 (section 8.11).
     #[must_use]
-    pub const fn implements(self, function: u8) -> bool {
-        match self {
-            Self::None => true,
-            Self::Icon3000 => matches!(function, 1..=6 | 8 | 15..=17),
-            Self::Icon3000v2 => matches!(function, 1..=6 | 8 | 15..=17 | 20),
-        }
+    pub fn implements(self, function: u8) -> bool {
+        self.map().is_none_or(|map| map.implements(function))
     }
 }

@@ -56,7 +56,8 @@ impl Read {
     }
 }
 
-/// Wraps a PDU into a frame. `transaction` is used by Modbus TCP only.
+/// Wraps a PDU into a frame. `transaction` is used by Modbus TCP only. A HART frame is a request of
+/// the primary master to a polling address: the first byte is the command, the rest its data.
 #[must_use]
 pub fn frame(framing: Framing, transaction: u16, unit: u8, pdu: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(pdu.len().saturating_mul(2).saturating_add(8));
@@ -82,6 +83,23 @@ pub fn frame(framing: Framing, transaction: u16, unit: u8, pdu: &[u8]) -> Vec<u8
             bytes.push(b':');
             bytes.extend_from_slice(hex(&payload).as_bytes());
             bytes.extend_from_slice(b"\r\n");
+        }
+        #[cfg(feature = "hart")]
+        Framing::Hart => {
+            use crate::hart::frame::{FILL, PREAMBLE, seal};
+            let (command, data) = pdu.split_first().unwrap_or((&0, &[]));
+            bytes.resize(*PREAMBLE.start(), FILL);
+            bytes.extend(seal(0x02, &[0x80 | unit & 0x3F], *command, data));
+        }
+        #[cfg(feature = "hart")]
+        Framing::HartIp => {
+            let (command, data) = pdu.split_first().unwrap_or((&0, &[]));
+            let inner = crate::hart::frame::seal(0x02, &[0x80 | unit & 0x3F], *command, data);
+            let len = u16::try_from(inner.len().saturating_add(8)).unwrap_or(u16::MAX);
+            bytes.extend([1, 0, 3, 0]);
+            bytes.extend_from_slice(&transaction.to_be_bytes());
+            bytes.extend_from_slice(&len.to_be_bytes());
+            bytes.extend(inner);
         }
     }
     bytes

@@ -9,10 +9,10 @@ use crate::map::row::Trust;
 use crate::problem::Problem;
 use crate::text::TextProblem;
 use crate::tree::{Decoded, Field, FieldId};
-use crate::value::{Quality, Value};
+use crate::value::{Quality, Rfc3339, Value};
 
 /// Text as a JSON string.
-struct Quoted<'a>(&'a str);
+pub(crate) struct Quoted<'a>(pub(crate) &'a str);
 
 impl fmt::Display for Quoted<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -59,13 +59,12 @@ pub fn write_frame(
     } else {
         write!(
             out,
-            r#","framing":"{}","role":"{}","unit":{},"function":{},"ok":{},"pairs_with":"#,
+            r#","framing":"{}","role":"{}""#,
             framing.key(),
-            frame.role.key(),
-            frame.unit,
-            frame.function,
-            decoded.is_ok()
+            frame.role.key()
         )?;
+        write_who(out, frame, framing, decoded)?;
+        write!(out, r#","ok":{},"pairs_with":"#, decoded.is_ok())?;
         match frame.pair() {
             Some(pair) => write!(out, "{pair}")?,
             None => out.write_str("null")?,
@@ -75,7 +74,7 @@ pub fn write_frame(
             if id.get() > 0 {
                 out.write_char(',')?;
             }
-            write_field(out, frame, decoded, id, field)?;
+            write_field(out, frame.offset, decoded, id, field)?;
         }
         out.write_char(']')?;
     }
@@ -106,7 +105,11 @@ pub fn write_text_problem(out: &mut impl Write, index: u32, problem: &TextProble
     out.write_str("]}")
 }
 
-fn write_problem(out: &mut impl Write, problem: &Problem, offset: u64) -> fmt::Result {
+/// One problem as a JSON object; `offset` is that of its first byte.
+///
+/// # Errors
+/// Only if writing fails.
+pub fn write_problem(out: &mut impl Write, problem: &Problem, offset: u64) -> fmt::Result {
     write!(
         out,
         r#"{{"severity":"{}","code":"{}","offset":{offset},"length":{},"text":{}}}"#,
@@ -117,9 +120,13 @@ fn write_problem(out: &mut impl Write, problem: &Problem, offset: u64) -> fmt::R
     )
 }
 
-fn write_field(
+/// One field as a JSON object; `base` is the offset of the first byte of the tree.
+///
+/// # Errors
+/// Only if writing fails.
+pub fn write_field(
     out: &mut impl Write,
-    frame: &Frame,
+    base: u64,
     decoded: &Decoded,
     id: FieldId,
     field: &Field,
@@ -131,7 +138,7 @@ fn write_field(
         Quoted(&field.name.label())
     )?;
     write_value(out, decoded, field)?;
-    let offset = frame.offset.saturating_add(u64::from(field.place.start));
+    let offset = base.saturating_add(u64::from(field.place.start));
     write!(
         out,
         r#","text":{},"unit":{},"raw":"{}","offset":{offset},"length":{},"source":"#,
@@ -160,7 +167,36 @@ fn write_field(
             Quoted(reading.text)
         )?;
     }
-    out.write_char('}')
+    let also = field.name.also();
+    for (at, reading) in also.iter().enumerate() {
+        let before = if at == 0 { r#","also":["# } else { "," };
+        write!(out, r#"{before}"{}""#, reading.id)?;
+    }
+    out.write_str(if also.is_empty() { "}" } else { "]}" })
+}
+
+/// Who was asked or answers, and what for.
+#[cfg_attr(
+    not(feature = "hart"),
+    expect(unused_variables, reason = "HART has addresses and commands instead")
+)]
+fn write_who(
+    out: &mut impl Write,
+    frame: &Frame,
+    framing: Framing,
+    decoded: &Decoded,
+) -> fmt::Result {
+    #[cfg(feature = "hart")]
+    match framing {
+        Framing::Hart => return crate::hart::who::write_who(out, decoded.bytes()),
+        Framing::HartIp => return crate::hart::ip::write_who(out, decoded.bytes()),
+        _ => {}
+    }
+    write!(
+        out,
+        r#","unit":{},"function":{}"#,
+        frame.unit, frame.function
+    )
 }
 
 fn write_value(out: &mut impl Write, decoded: &Decoded, field: &Field) -> fmt::Result {
@@ -185,6 +221,7 @@ fn write_value(out: &mut impl Write, decoded: &Decoded, field: &Field) -> fmt::R
             }
             out.write_char(']')
         }
+        Value::Stamp(seconds) => write!(out, "\"{}\"", Rfc3339(seconds)),
         Value::Raw => write!(out, r#""{}""#, decoded.raw(field)),
         Value::Text | Value::Amount { .. } | Value::Date { .. } | Value::Time { .. } => {
             write!(out, "{}", Quoted(&decoded.bare_text(field)))

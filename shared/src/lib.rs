@@ -33,8 +33,13 @@ pub mod address;
 pub mod capture;
 pub mod decode;
 pub mod device;
+pub mod dop;
 pub mod encode;
+pub mod few;
 pub mod frame;
+pub mod guess;
+#[cfg(feature = "hart")]
+pub mod hart;
 pub mod image;
 pub mod json;
 pub mod map;

@@ -208,6 +208,29 @@ pub enum Finding {
         /// Bytes that follow.
         want: u16,
     },
+    /// Diagnostic object: the number of registers is not that of the layout.
+    Registers {
+        /// As received.
+        got: u16,
+        /// As the layout has.
+        want: u16,
+    },
+    /// Diagnostic object: the number of records of a log is not that of its registers.
+    Records {
+        /// As transmitted.
+        got: u16,
+        /// Whole records that there are.
+        want: u16,
+    },
+    /// Diagnostic object: no layout is known for this request.
+    NoLayout,
+    /// Diagnostic object: the unit answered with an error code.
+    DopError {
+        /// The code.
+        code: u16,
+    },
+    /// A time before 2000 or after 2099.
+    OddTime,
     /// Pasted text: an odd number of hexadecimal digits.
     OddDigits,
     /// Pasted text: a single digit was taken as a byte.
@@ -219,6 +242,9 @@ pub enum Finding {
     },
     /// Nothing to decode.
     Empty,
+    /// A finding about a HART frame.
+    #[cfg(feature = "hart")]
+    Hart(crate::hart::problem::Hart),
 }
 
 /// A finding with its place.
@@ -242,6 +268,8 @@ impl Problem {
     pub const fn severity(&self) -> Severity {
         use Finding as F;
         match self.finding {
+            #[cfg(feature = "hart")]
+            F::Hart(finding) => finding.severity(),
             F::Noise { .. }
             | F::Crc { .. }
             | F::Lrc { .. }
@@ -252,6 +280,9 @@ impl Problem {
             | F::BadDigit
             | F::NotAsAsked { .. }
             | F::CoilValue { .. }
+            | F::Registers { .. }
+            | F::Records { .. }
+            | F::NoLayout
             | F::OddDigits
             | F::NotHex { .. }
             | F::Empty => Severity::Error,
@@ -268,6 +299,7 @@ impl Problem {
             | F::Range { .. }
             | F::NoName { .. }
             | F::BadDigits { .. }
+            | F::OddTime
             | F::LoneDigit => Severity::Warning,
             F::NotImplemented { .. }
             | F::NoLineEnd
@@ -277,7 +309,8 @@ impl Problem {
             | F::NotInMap
             | F::Part { .. }
             | F::UnusedBits { .. }
-            | F::ReportCount { .. } => Severity::Note,
+            | F::ReportCount { .. }
+            | F::DopError { .. } => Severity::Note,
         }
     }
 
@@ -286,6 +319,8 @@ impl Problem {
     pub const fn code(&self) -> &'static str {
         use Finding as F;
         match self.finding {
+            #[cfg(feature = "hart")]
+            F::Hart(finding) => finding.code(),
             F::Noise { .. } => "noise",
             F::Crc {
                 cause: Cause::Missing,
@@ -322,6 +357,11 @@ impl Problem {
             F::Part { .. } => "part-of-value",
             F::UnusedBits { .. } => "unused-bits",
             F::ReportCount { .. } => "report-count",
+            F::Registers { .. } => "register-count",
+            F::Records { .. } => "record-count",
+            F::NoLayout => "no-layout",
+            F::DopError { .. } => "dop-error",
+            F::OddTime => "odd-time",
             F::OddDigits => "odd-hex-digits",
             F::LoneDigit => "lone-hex-digit",
             F::NotHex { .. } => "not-hex",

@@ -1,9 +1,15 @@
 //! What page and backend say to each other: JSON text frames over one WebSocket.
 //!
 //! Bytes travel as hexadecimal; the page decodes them itself. Both sides begin with `hello`. There
-//! is no message that writes to a device, and none that carries a frame of the page's making.
+//! is no message that carries a value, an address to write to, or a frame of the page's making.
+//! Reading a diagnostic object ([`DopAsk`]) is the one thing for which the backend writes: the
+//! request word of that object, to the register that its own configuration names.
 //!
 //! Changing a variant means a new [`VERSION`].
+
+mod dop;
+
+pub use dop::{DOP_PREFIX, DopAsk, DopNews, DopStep, LogFrom, MAX_DOP_REQUESTS};
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +17,7 @@ use crate::address::{Address, Table};
 use crate::encode::Read;
 
 /// Version of this protocol.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Largest message that a page may send, in bytes.
 pub const MAX_MESSAGE: usize = 64 * 1024;
@@ -123,6 +129,8 @@ pub enum ToBackend {
         /// Time from one round to the next.
         period_ms: u32,
     },
+    /// About the diagnostic objects of a DOP device; the answers are [`DopNews`].
+    Dop(DopAsk),
 }
 
 /// A bus of the configuration.
@@ -209,7 +217,7 @@ pub enum ToPage {
         now_us: u64,
         /// Milliseconds since 1970 at that moment.
         wall_ms: u64,
-        /// True: no write leaves this backend.
+        /// True: no write leaves this backend but the request for a diagnostic object.
         read_only: bool,
         /// All buses.
         buses: Vec<Bus>,
@@ -295,8 +303,8 @@ mod tests {
             assert_eq!(&serde_json::from_str::<ToBackend>(json).unwrap(), message);
         };
         check(
-            &ToBackend::Hello { version: 1 },
-            r#"{"hello":{"version":1}}"#,
+            &ToBackend::Hello { version: 2 },
+            r#"{"hello":{"version":2}}"#,
         );
         let block = Block {
             table: TableName::Holding,

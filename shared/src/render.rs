@@ -6,7 +6,7 @@ use crate::address::RegisterNumber;
 use crate::map::row::{Kind, Reading, Source, Trust};
 use crate::reader::Layout;
 use crate::tree::{Decoded, Field, FieldId, Name};
-use crate::value::Value;
+use crate::value::{Value, civil};
 
 impl Name {
     /// What people read.
@@ -18,7 +18,20 @@ impl Name {
             Self::Register(table, address) => format!("{} {address}", table.label()),
             Self::Row(row) => row.label.to_owned(),
             Self::Part(row, _) => format!("{} (part)", row.label),
-            Self::Bit(_, member) => member.label.to_owned(),
+            Self::Bit(_, member) | Self::DopBit(_, member) => member.label.to_owned(),
+            Self::Dop(field, at) => field.item_label(*at),
+            Self::DopArray(field) => field.label.to_owned(),
+            Self::DopWord(_, at) => format!("Register {at}"),
+            #[cfg(feature = "hart")]
+            Self::HartCommand(command) => command.label.to_owned(),
+            #[cfg(feature = "hart")]
+            Self::Hart(item, _, u16::MAX) | Self::HartPart(item, u16::MAX) => item.label.to_owned(),
+            #[cfg(feature = "hart")]
+            Self::Hart(item, _, at) | Self::HartPart(item, at) => format!("{} {at}", item.label),
+            #[cfg(feature = "hart")]
+            Self::HartBit(bit) if bit.alias.is_empty() => bit.label.to_owned(),
+            #[cfg(feature = "hart")]
+            Self::HartBit(bit) => format!("{} (also: {})", bit.label, bit.alias),
         }
     }
 
@@ -28,7 +41,18 @@ impl Name {
         match self {
             Self::Def(def) | Self::Item(def, _) | Self::Within(_, def) => def.unit,
             Self::Row(row) => row.unit,
-            Self::Register(..) | Self::Part(..) | Self::Bit(..) => "",
+            Self::Dop(field, _) | Self::DopArray(field) => field.unit,
+            Self::Register(..)
+            | Self::Part(..)
+            | Self::Bit(..)
+            | Self::DopBit(..)
+            | Self::DopWord(..) => "",
+            #[cfg(feature = "hart")]
+            Self::Hart(_, Some(unit), _) => unit.symbol,
+            #[cfg(feature = "hart")]
+            Self::Hart(item, None, _) => item.unit,
+            #[cfg(feature = "hart")]
+            Self::HartCommand(_) | Self::HartPart(..) | Self::HartBit(_) => "",
         }
     }
 
@@ -40,7 +64,16 @@ impl Name {
             Self::Row(row) | Self::Part(row, _) | Self::Bit(row, _) | Self::Within(row, _) => {
                 Some(row.source)
             }
-            Self::Register(..) => None,
+            Self::Dop(field, _) | Self::DopArray(field) | Self::DopBit(field, _) => {
+                Some(field.source)
+            }
+            Self::Register(..) | Self::DopWord(..) => None,
+            #[cfg(feature = "hart")]
+            Self::HartCommand(command) => Some(command.source),
+            #[cfg(feature = "hart")]
+            Self::Hart(item, ..) | Self::HartPart(item, _) => Some(item.source),
+            #[cfg(feature = "hart")]
+            Self::HartBit(bit) => Some(bit.source),
         }
     }
 
@@ -52,7 +85,14 @@ impl Name {
                 row.trust
             }
             Self::Def(_) | Self::Item(..) => Trust::Manual,
-            Self::Register(..) => Trust::Inferred,
+            Self::Dop(field, _) | Self::DopArray(field) | Self::DopBit(field, _) => field.trust,
+            Self::Register(..) | Self::DopWord(..) => Trust::Inferred,
+            #[cfg(feature = "hart")]
+            Self::HartCommand(_) => Trust::Manual,
+            #[cfg(feature = "hart")]
+            Self::Hart(item, ..) | Self::HartPart(item, _) => item.trust,
+            #[cfg(feature = "hart")]
+            Self::HartBit(bit) => bit.trust,
         }
     }
 
@@ -63,8 +103,33 @@ impl Name {
             Self::Row(row) | Self::Part(row, _) | Self::Bit(row, _) | Self::Within(row, _) => {
                 row.reading
             }
-            Self::Def(_) | Self::Item(..) | Self::Register(..) => None,
+            Self::Dop(field, _) | Self::DopArray(field) | Self::DopBit(field, _) => field.reading,
+            Self::Def(_) | Self::Item(..) | Self::Register(..) | Self::DopWord(..) => None,
+            #[cfg(feature = "hart")]
+            Self::HartCommand(command) => first(command.readings),
+            #[cfg(feature = "hart")]
+            Self::Hart(item, ..) | Self::HartPart(item, _) => first(item.readings),
+            #[cfg(feature = "hart")]
+            Self::HartBit(bit) => bit.reading,
         }
+    }
+
+    /// Further readings that concern it.
+    #[must_use]
+    pub const fn also(&self) -> &'static [&'static Reading] {
+        match self {
+            Self::Dop(field, _) | Self::DopArray(field) | Self::DopBit(field, _) => field.also,
+            _ => &[],
+        }
+    }
+}
+
+/// The reading that decides.
+#[cfg(feature = "hart")]
+const fn first(readings: &[&'static Reading]) -> Option<&'static Reading> {
+    match readings {
+        [first, ..] => Some(*first),
+        [] => None,
     }
 }
 
@@ -102,9 +167,43 @@ impl Decoded {
                 write!(path, "{}.{address}", table.key())
             }
             Name::Row(row) => write!(path, "{}.{}", row.table.key(), row.address),
-            Name::Bit(_, member) => {
+            Name::Dop(field, at) if field.is_indexed() => {
+                write!(path, "dop.{}.{}[{at}]", field.object, field.key)
+            }
+            Name::Dop(field, _) | Name::DopArray(field) => {
+                write!(path, "dop.{}.{}", field.object, field.key)
+            }
+            Name::DopWord(object, at) => write!(path, "dop.{object}.word[{at}]"),
+            Name::Bit(_, member) | Name::DopBit(_, member) => {
                 below(path);
                 path.write_str(member.key)
+            }
+            #[cfg(feature = "hart")]
+            Name::HartCommand(command) => write!(path, "command.{}", command.number),
+            #[cfg(feature = "hart")]
+            Name::HartPart(item, at) if at < u16::MAX => {
+                // The entries of a map are named by their index, not by the bytes around them.
+                let around = field.parent.and_then(|p| self.field(p)?.parent);
+                if let Some(around) = around {
+                    self.write_path(around, path);
+                    path.push('.');
+                }
+                write!(path, "{}[{at}]", item.key)
+            }
+            #[cfg(feature = "hart")]
+            Name::Hart(item, _, at) if at < u16::MAX => {
+                below(path);
+                write!(path, "{}[{at}]", item.key)
+            }
+            #[cfg(feature = "hart")]
+            Name::Hart(item, ..) | Name::HartPart(item, _) => {
+                below(path);
+                path.write_str(item.key)
+            }
+            #[cfg(feature = "hart")]
+            Name::HartBit(bit) => {
+                below(path);
+                path.write_str(bit.key)
             }
         };
     }
@@ -152,6 +251,9 @@ impl Decoded {
     /// The value of a field in words, without its unit.
     #[must_use]
     pub fn bare_text(&self, field: &Field) -> String {
+        if let Some(words) = self.words_of(field) {
+            return words.to_owned();
+        }
         match field.value {
             Value::Text => self.characters(field),
             Value::Amount { unit } => {
@@ -180,6 +282,19 @@ impl Decoded {
         }
     }
 
+    /// The words that were set for a field.
+    fn words_of(&self, field: &Field) -> Option<&str> {
+        if self.said.is_empty() {
+            return None;
+        }
+        // A field is told by its name and place: bits share a place.
+        let (id, _) = self
+            .iter()
+            .find(|(_, f)| f.place == field.place && f.name == field.name)?;
+        let at = self.said.binary_search_by_key(&id, |(id, _)| *id).ok()?;
+        self.said.get(at).map(|(_, words)| words.as_str())
+    }
+
     fn characters(&self, field: &Field) -> String {
         let bytes = self.payload(field);
         if let Name::Row(row) = field.name
@@ -196,7 +311,7 @@ impl Decoded {
 }
 
 /// Characters without the padding at both ends; what is not printable becomes a middle dot.
-fn text_of(bytes: &[u8]) -> String {
+pub(crate) fn text_of(bytes: &[u8]) -> String {
     let text: String = bytes
         .iter()
         .map(|b| match b {
@@ -222,7 +337,7 @@ impl fmt::Display for Value {
                 write!(f, "{address} ({})", RegisterNumber::of(table, address))
             }
             Self::Code { raw, set } => match set.get(raw) {
-                Some(member) => write!(f, "{} ({raw})", member.label),
+                Some(member) => write!(f, "{} ({raw})", member.name(raw)),
                 None => write!(f, "unknown code ({raw})"),
             },
             Self::Named(raw, Some(name)) => write!(f, "{name} ({raw})"),
@@ -248,6 +363,15 @@ impl fmt::Display for Value {
                 minute,
                 second,
             } => write!(f, "{hour:02}:{minute:02}:{second:02}"),
+            Self::Stamp(seconds) => {
+                let (year, month, day, second) = civil(seconds);
+                let (hour, minute) = (second / 3600, (second % 3600) / 60);
+                write!(
+                    f,
+                    "{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{:02} UTC",
+                    second % 60
+                )
+            }
             Self::Unavailable(why) => write!(f, "not available ({why})"),
         }
     }

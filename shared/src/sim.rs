@@ -1,4 +1,5 @@
-//! Simulated ICON3000 and ICON3000v2 actuators: pure state machines that answer Modbus PDUs.
+//! Simulated actuators: pure state machines that answer Modbus PDUs. [`Dop`] is a Limitorque with
+//! diagnostic objects; the rest of this module is the ICON3000 and ICON3000v2.
 //!
 //! A simulated actuator has no clock. Time comes in with [`Icon3000::advance`], and the same times
 //! give the same answers. It knows the facts of the map (ranges, levels, access), but shares no code
@@ -16,6 +17,7 @@
 mod answer;
 mod clock;
 mod demand;
+mod dop;
 mod drive;
 mod files;
 mod log;
@@ -32,6 +34,8 @@ use clock::Stamp;
 use drive::Drive;
 use log::Log;
 use store::{Store, at};
+
+pub use dop::{Dop, DopSetup};
 
 /// What an actuator does while nobody commands it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

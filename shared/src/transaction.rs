@@ -80,7 +80,7 @@ impl Pairing {
                 };
                 slot.take().map(|o| o.index)
             }
-            Role::Unknown | Role::Noise => None,
+            Role::Burst | Role::Unknown | Role::Noise => None,
         }
     }
 

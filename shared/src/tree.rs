@@ -4,6 +4,9 @@
 //! one that says "unknown".
 
 use crate::address::{Address, Table};
+use crate::dop::object;
+#[cfg(feature = "hart")]
+use crate::hart::model as hart;
 use crate::map::row::{Member, Row, Source};
 use crate::place::Place;
 use crate::problem::Problem;
@@ -40,6 +43,40 @@ pub enum Name {
     Bit(&'static Row, &'static Member),
     /// A part of a device map's value, such as the date of a torque curve.
     Within(&'static Row, &'static FieldDef),
+    /// A value of a diagnostic object: the element of an array, or the record of a log, from 0.
+    Dop(&'static object::Field, u16),
+    /// All values of an array of a diagnostic object.
+    DopArray(&'static object::Field),
+    /// One bit of a value of a diagnostic object.
+    DopBit(&'static object::Field, &'static Member),
+    /// A register of a diagnostic object about which no layout says anything.
+    DopWord(u16, u16),
+    /// The data of a HART command.
+    #[cfg(feature = "hart")]
+    HartCommand(&'static hart::Command),
+    /// A value in the data of a HART command: its unit where a code names it, and which of several
+    /// it is (`u16::MAX` for the only one).
+    #[cfg(feature = "hart")]
+    Hart(&'static hart::Item, Option<&'static hart::Unit>, u16),
+    /// A part of a byte of a HART command, with an index where it has one.
+    #[cfg(feature = "hart")]
+    HartPart(&'static hart::Item, u16),
+    /// One bit of a HART status.
+    #[cfg(feature = "hart")]
+    HartBit(&'static hart::Bit),
+}
+
+impl Name {
+    /// True for bits and parts of a byte: the field around them owns the byte.
+    #[must_use]
+    pub const fn shares_bytes(&self) -> bool {
+        match self {
+            Self::Bit(..) | Self::DopBit(..) => true,
+            #[cfg(feature = "hart")]
+            Self::HartBit(_) | Self::HartPart(..) => true,
+            _ => false,
+        }
+    }
 }
 
 /// Index of a field in its [`Decoded`].
@@ -84,6 +121,8 @@ pub struct Decoded {
     pub(crate) layout: Layout,
     pub(crate) fields: Vec<Field>,
     pub(crate) problems: Vec<Problem>,
+    /// Words of values that do not follow from value and bytes, by field.
+    pub(crate) said: Vec<(FieldId, String)>,
 }
 
 impl Decoded {
@@ -153,7 +192,7 @@ impl Decoded {
     pub fn owner(&self, offset: u16) -> Option<FieldId> {
         let mut found: Option<(FieldId, Place)> = None;
         for (id, field) in self.iter() {
-            if !field.place.contains(offset) || matches!(field.name, Name::Bit(..)) {
+            if !field.place.contains(offset) || field.name.shares_bytes() {
                 continue;
             }
             // Later and smaller wins: children follow their parents.
@@ -168,6 +207,7 @@ impl Decoded {
         self.bytes.clear();
         self.fields.clear();
         self.problems.clear();
+        self.said.clear();
         self.layout = Layout::Plain;
     }
 
@@ -196,6 +236,22 @@ impl Decoded {
         {
             field.quality = quality;
         }
+    }
+
+    /// Cuts a field, the last one if nothing is below it, to what was understood of it.
+    #[cfg(feature = "hart")]
+    pub(crate) fn shrink(&mut self, id: FieldId, len: u16) {
+        let at = usize::try_from(id.0).unwrap_or(usize::MAX);
+        if len == 0 && self.fields.len() == at.saturating_add(1) {
+            self.fields.pop();
+        } else if let Some(field) = self.fields.get_mut(at) {
+            field.place.len = len;
+        }
+    }
+
+    /// Sets the words of a value. Fields are said in their order.
+    pub(crate) fn say(&mut self, id: FieldId, words: String) {
+        self.said.push((id, words));
     }
 
     pub(crate) fn problem(&mut self, problem: Problem) {

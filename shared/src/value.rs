@@ -65,6 +65,8 @@ pub enum Value {
         /// 0 to 59.
         second: u8,
     },
+    /// A point in time: seconds since 1970-01-01 UTC.
+    Stamp(i64),
     /// Nominal torque or thrust: a unit, and its amount as characters at the field's place.
     Amount {
         /// Name of the unit as the manual prints it, `None` for an unknown code.
@@ -113,5 +115,89 @@ impl Quality {
             Self::Disputed => "disputed reading",
             Self::Damaged => "damaged frame",
         }
+    }
+}
+
+/// A point in time for programs: `2021-02-12T15:29:15Z`.
+#[derive(Clone, Copy, Debug)]
+pub struct Rfc3339(pub i64);
+
+impl core::fmt::Display for Rfc3339 {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (year, month, day, second) = civil(self.0);
+        let (hour, minute) = (second / 3600, (second % 3600) / 60);
+        write!(
+            f,
+            "{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{:02}Z",
+            second % 60
+        )
+    }
+}
+
+/// Year, month, day and the second of the day of a point in time.
+///
+/// Counts days from the first of March of the year 0, so that the day of a leap year is the last
+/// of its year; four hundred years have 146097 days.
+#[must_use]
+pub fn civil(seconds: i64) -> (i64, u8, u8, u32) {
+    let small = |n: i64| u8::try_from(n).unwrap_or(0);
+    let second = u32::try_from(seconds.rem_euclid(86_400)).unwrap_or(0);
+    let days = seconds.div_euclid(86_400).saturating_add(719_468);
+    let (era, day) = (days.div_euclid(146_097), days.rem_euclid(146_097));
+    // The last day of four years, of a century and of four centuries is no year of its own.
+    let leap = (day / 1460)
+        .saturating_sub(day / 36_524)
+        .saturating_add(day / 146_096);
+    let year = day.saturating_sub(leap) / 365;
+    let before = year
+        .saturating_mul(365)
+        .saturating_add(year / 4)
+        .saturating_sub(year / 100);
+    let day = day.saturating_sub(before);
+    // Five months from March on have 153 days.
+    let month = day.saturating_mul(5).saturating_add(2) / 153;
+    let first = month.saturating_mul(153).saturating_add(2) / 5;
+    let year = era.saturating_mul(400).saturating_add(year);
+    let (month, year) = if month < 10 {
+        (month.saturating_add(3), year)
+    } else {
+        (month.saturating_sub(9), year.saturating_add(1))
+    };
+    (
+        year,
+        small(month),
+        small(day.saturating_sub(first).saturating_add(1)),
+        second,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Days around leap years and the ends of the calendar, worked out by hand.
+    #[test]
+    fn points_in_time_are_dates() {
+        let check = |seconds, expected: &str| {
+            assert_eq!(Rfc3339(seconds).to_string(), expected);
+        };
+        check(0, "1970-01-01T00:00:00Z");
+        check(-1, "1969-12-31T23:59:59Z");
+        // 10957 days later; 2000 is a leap year although a century.
+        check(946_684_800, "2000-01-01T00:00:00Z");
+        check(951_782_400, "2000-02-29T00:00:00Z");
+        check(951_868_800, "2000-03-01T00:00:00Z");
+        // 2100 is none.
+        check(4_107_542_399, "2100-02-28T23:59:59Z");
+        check(4_107_542_400, "2100-03-01T00:00:00Z");
+        check(253_402_300_799, "9999-12-31T23:59:59Z");
+        check(1_613_143_755, "2021-02-12T15:29:15Z");
+        assert_eq!(
+            Value::Stamp(1_613_143_755).to_string(),
+            "2021-02-12 15:29:15 UTC"
+        );
+        // No time is too far away to be written.
+        assert!(!Rfc3339(i64::MAX).to_string().is_empty());
+        assert!(!Rfc3339(i64::MIN).to_string().is_empty());
     }
 }

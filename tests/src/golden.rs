@@ -21,7 +21,7 @@ use shared::frame::{Frame, Framing, scan};
 use shared::json;
 use shared::problem::{Problem, Severity};
 use shared::text::import;
-use shared::tree::{Decoded, Name};
+use shared::tree::{Decoded, Field};
 use shared::value::Value;
 
 /// Name, cases and JSON lines of a case file.
@@ -35,12 +35,14 @@ macro_rules! file {
     };
 }
 /// The case files with their blessed JSON lines.
-pub const FILES: [(&str, &str, &str); 5] = [
+pub const FILES: [(&str, &str, &str); 7] = [
     file!("icon3000-manual"),
     file!("icon3000-values"),
     file!("ddc100-guide"),
+    file!("ddc100-values"),
     file!("modbus-application"),
     file!("bad-input"),
+    file!("hart-frames"),
 ];
 
 /// One case.
@@ -232,15 +234,20 @@ fn summary(run: &Run, index: usize) -> String {
     )
 }
 
+/// True for bits and other parts of a byte, which share it with the field around them.
+fn is_part(field: &Field) -> bool {
+    let is_bit = matches!(field.value, Value::Bit { .. }) && field.parent.is_some();
+    is_bit || field.name.shares_bytes()
+}
+
 /// Says where the leaves of a tree do not tile its frame. Bits share the byte of their word.
 fn untiled(tree: &Decoded) -> Option<String> {
     let mut owners = vec![0_u32; tree.bytes().len()];
     for (id, field) in tree.iter() {
         let has_parts = tree
             .iter()
-            .any(|(_, f)| f.parent == Some(id) && !matches!(f.value, Value::Bit { .. }));
-        let is_bit = matches!(field.value, Value::Bit { .. }) && field.parent.is_some();
-        if has_parts || is_bit || matches!(field.name, Name::Bit(..)) {
+            .any(|(_, f)| f.parent == Some(id) && !is_part(f));
+        if has_parts || is_part(field) {
             continue;
         }
         for owner in owners.get_mut(field.place.range())? {

@@ -12,6 +12,7 @@
 
 #[cfg(all(feature = "browser", not(target_arch = "wasm32")))]
 pub mod browser;
+pub mod dop;
 pub mod golden;
 pub mod load;
 #[cfg(all(feature = "peers", not(target_arch = "wasm32")))]
@@ -20,6 +21,8 @@ pub mod page;
 pub mod peers;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod process;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod registers;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod server;
 

@@ -1,11 +1,12 @@
 //! A page without a browser: speaks the WebSocket protocol and decodes what comes.
 
+use std::collections::VecDeque;
 use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
 use shared::capture::{Capture, Direction, Micros};
 use shared::frame::{Framing, Role};
-use shared::proto::{Block, Outcome, ToBackend, ToPage, VERSION, Way};
+use shared::proto::{Block, DopAsk, DopNews, Outcome, ToBackend, ToPage, VERSION, Way};
 use shared::session::Session;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
@@ -18,6 +19,8 @@ const PATIENCE: Duration = Duration::from_secs(15);
 pub struct Page {
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     session: Session,
+    /// News about diagnostic objects that nobody has looked at yet.
+    news: VecDeque<DopNews>,
 }
 
 impl Page {
@@ -37,6 +40,7 @@ impl Page {
         let mut page = Self {
             socket,
             session: Session::new(framing),
+            news: VecDeque::new(),
         };
         page.send(&ToBackend::Hello { version: VERSION });
         page.send(&ToBackend::Subscribe {
@@ -65,11 +69,24 @@ impl Page {
     /// If none comes in time, or if it is not of the protocol.
     pub fn receive(&mut self) -> ToPage {
         loop {
+            if let Some(message) = self.receive_any() {
+                return message;
+            }
+        }
+    }
+
+    /// The next message; `None` if it was about diagnostic objects, and is kept.
+    fn receive_any(&mut self) -> Option<ToPage> {
+        loop {
             let text = match self.socket.read().expect("a message in time") {
                 Message::Text(text) => text,
                 Message::Ping(_) | Message::Pong(_) => continue,
                 other => panic!("unexpected {other:?}"),
             };
+            if let Some(news) = DopNews::from_text(&text) {
+                self.news.push_back(news);
+                return None;
+            }
             let message: ToPage = serde_json::from_str(&text).expect("a message of the protocol");
             if let ToPage::Capture {
                 at_us,
@@ -92,7 +109,7 @@ impl Page {
                     ends: *ends,
                 });
             }
-            return message;
+            return Some(message);
         }
     }
 
@@ -130,6 +147,41 @@ impl Page {
             }
         }
         panic!("no end of the read within {PATIENCE:?}; so far {done:?}");
+    }
+
+    /// Reads diagnostic objects of a device; what came of them, in order, without the steps.
+    ///
+    /// # Panics
+    ///
+    /// If they are not read in time.
+    pub fn objects(&mut self, device: &str, requests: &[u16]) -> Vec<DopNews> {
+        const ID: u32 = 78;
+        self.send(&ToBackend::Dop(DopAsk::Read {
+            id: ID,
+            device: device.to_owned(),
+            requests: requests.to_vec(),
+        }));
+        let mut found = Vec::new();
+        loop {
+            match self.next_news() {
+                DopNews::Done { id: ID, .. } => return found,
+                DopNews::Progress { .. } | DopNews::Profile { .. } => {}
+                news => found.push(news),
+            }
+        }
+    }
+
+    /// The next news about diagnostic objects.
+    fn next_news(&mut self) -> DopNews {
+        let start = Instant::now();
+        loop {
+            if let Some(news) = self.news.pop_front() {
+                return news;
+            }
+            assert!(start.elapsed() < PATIENCE, "no news within {PATIENCE:?}");
+            // Ticks come every two seconds, so this ends.
+            let _other = self.receive_any();
+        }
     }
 
     /// Frames of the bus decoded so far.

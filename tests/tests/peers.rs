@@ -1,13 +1,14 @@
 //! Other implementations of Modbus as judges of ours: pymodbus and mbpoll (libmodbus) read our
 //! simulated actuator, our backend reads a device of pymodbus.
 
+use std::collections::BTreeMap;
 use std::net::TcpListener;
 use std::path::PathBuf;
 use std::process::Command;
 
 use serde_json::{Value, json};
 use shared::frame::Framing;
-use shared::proto::{Block, Outcome, TableName};
+use shared::proto::{Block, DopNews, Outcome, TableName};
 use tests::page::Page;
 use tests::peers::{mbpoll, python};
 use tests::process::Process;
@@ -28,8 +29,14 @@ fn free_port() -> u16 {
 
 /// Our simulator on Modbus TCP.
 fn simulator() -> (Process, u16) {
+    simulator_with(&[])
+}
+
+/// The same with options.
+fn simulator_with(options: &[&str]) -> (Process, u16) {
     let mut command = Command::new(binary());
     command.args(["simulate", "--listen", "127.0.0.1:0"]);
+    command.args(options);
     Process::start(&mut command, "build the backend first", |line| {
         line.split_once("listening on 127.0.0.1:")?
             .1
@@ -51,8 +58,14 @@ fn cable() -> (Process, String, String) {
 
 /// Our simulator on a serial line.
 fn serial_simulator(path: &str) -> Process {
+    serial_simulator_with(path, &[])
+}
+
+/// The same with options.
+fn serial_simulator_with(path: &str, options: &[&str]) -> Process {
     let mut command = Command::new(binary());
     command.args(["simulate", "--serial", path, "--baud", "38400"]);
+    command.args(options);
     Process::start(&mut command, "build the backend first", |line| {
         line.contains(path).then_some(())
     })
@@ -295,4 +308,77 @@ fn our_backend_reads_pymodbus_over_ascii() {
     let (_device, server, file) = backend_beside("ascii", &theirs, &bus);
     check_reads(&server, Framing::Ascii);
     std::fs::remove_file(file).expect("it was there");
+}
+
+// ---- diagnostic objects
+
+/// A unit that stands still, so that most of its registers stay what they are.
+const DOP: [&str; 5] = ["--device", "dop", "--tag", "MX-PEER", "--still"];
+
+/// Registers by request word, as the script of pymodbus read them.
+type Objects = BTreeMap<u16, Vec<u16>>;
+
+/// The script performs the handshake by itself and checks what the objects mean.
+fn pymodbus_reads_objects(kind: &str, place: &str) -> Objects {
+    let output = python()
+        .arg(script("dop.py"))
+        .args([kind, place])
+        .output()
+        .expect("python starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let objects: BTreeMap<String, Vec<u16>> = serde_json::from_str(&text).expect("JSON");
+    let word = |(word, words): (String, Vec<u16>)| (word.parse().expect("a word"), words);
+    objects.into_iter().map(word).collect()
+}
+
+/// What our backend reads is what pymodbus read.
+fn check_objects(bus: &str, framing: Framing, name: &str, want: &Objects) {
+    let profile = r#"{"registers":{"request":4000,"indicators":4010,"status":4014,"count":4015,
+        "response":4100}}"#;
+    let directory =
+        std::env::temp_dir().join(format!("valvescope-peer-dop-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&directory).expect("a temporary directory");
+    std::fs::write(directory.join("site.json"), profile).expect("a temporary file");
+    let config = format!(
+        "[[bus]]\nname = \"peer\"\n{bus}\n\n[[device]]\ntag = \"M-1\"\nkind = \"dop\"\n\
+         bus = \"peer\"\nunit = 1\nprofile = \"site.json\"\n"
+    );
+    let file = directory.join("plant.toml");
+    std::fs::write(&file, config).expect("a temporary file");
+    let server = Server::start(&["--config", file.to_str().expect("a path in UTF-8")]);
+    let mut page = Page::open(server.address(), "peer", framing);
+    let requests: Vec<u16> = want.keys().copied().collect();
+    assert!(requests.len() >= 5);
+    let news = page.objects("M-1", &requests);
+    assert_eq!(news.len(), requests.len(), "{news:?}");
+    for (news, (word, words)) in news.iter().zip(want) {
+        let DopNews::Object { request, hex, .. } = news else {
+            panic!("{news:?}");
+        };
+        let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_be_bytes()).collect();
+        assert_eq!((request, hex), (word, &shared::render::hex(&bytes)));
+    }
+    std::fs::remove_dir_all(directory).expect("it was there");
+}
+
+#[test]
+fn pymodbus_and_we_read_the_same_objects_over_tcp() {
+    let (_simulator, port) = simulator_with(&DOP);
+    let objects = pymodbus_reads_objects("tcp", &port.to_string());
+    let bus = format!("kind = \"tcp\"\nhost = \"127.0.0.1:{port}\"");
+    check_objects(&bus, Framing::Tcp, "tcp", &objects);
+}
+
+#[test]
+fn pymodbus_and_we_read_the_same_objects_over_a_serial_line() {
+    let (_cable, ours, theirs) = cable();
+    let _simulator = serial_simulator_with(&ours, &DOP);
+    let objects = pymodbus_reads_objects("rtu", &theirs);
+    let bus = format!("kind = \"rtu\"\nport = \"{theirs}\"\nbaud = 38400\nmode = \"8N1\"");
+    check_objects(&bus, Framing::Rtu, "rtu", &objects);
 }

@@ -5,7 +5,10 @@ use crate::{Result, shell, test};
 
 /// Rewrites the expected output of the golden tests. Look at the difference before committing it.
 pub fn bless() -> Result {
-    shell::run(shell::cargo(["test", "-p", "tests", "--test", "golden"]).env("BLESS", "1"))?;
+    shell::run(
+        shell::cargo(["test", "-p", "tests", "--test", "golden", "--test", "dop"])
+            .env("BLESS", "1"),
+    )?;
     shell::run(&mut shell::program(
         "git",
         ["status", "--short", "tests/fixtures"],

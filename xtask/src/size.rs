@@ -1,29 +1,39 @@
 //! The size of the page on the wire.
 
 use crate::Result;
-use crate::web::Bundle;
+use crate::web::{Bundle, Program};
 
-/// The bar: what a browser must load before it can show anything, compressed.
+/// The bar: what a browser must load before it can show anything, compressed. A program that is
+/// loaded later is waited for as well, so it has the same bar.
 const BAR: u64 = 250_000;
 
 /// Prints what each part of the bundle weighs, and fails above the bar.
 pub fn size(bundle: &Bundle) -> Result {
-    let total = measure(bundle)?;
-    if total > BAR {
-        let over = kilo(total - BAR);
-        return Err(format!(
-            "the page is {over:.1} kB too large; look for large dependencies with \
-             `cargo tree -p frontend` and for long texts in shared/data"
-        )
-        .into());
+    let mut said = Vec::new();
+    let page = (&bundle.page, "first load");
+    let later = bundle.later.iter().map(|program| (program, "on demand"));
+    for (program, when) in [page].into_iter().chain(later) {
+        let total = measure(program, when)?;
+        if total > BAR {
+            said.push(format!(
+                "{} is {:.1} kB too large; look for large dependencies with `cargo tree -p \
+                 frontend` and for long texts in shared/data",
+                program.name,
+                kilo(total - BAR)
+            ));
+        }
     }
-    Ok(())
+    if said.is_empty() {
+        Ok(())
+    } else {
+        Err(said.join("\n").into())
+    }
 }
 
-/// Prints what each part of the bundle weighs, and returns the sum.
-fn measure(bundle: &Bundle) -> Result<u64> {
+/// Prints what each part of a program weighs, and returns the sum.
+fn measure(program: &Program, when: &str) -> Result<u64> {
     let mut total = 0;
-    for file in [&bundle.wasm, &bundle.js] {
+    for file in [&program.wasm, &program.js] {
         let raw = std::fs::metadata(file)?.len();
         let packed = std::fs::metadata(crate::web::br_name(file))?.len();
         let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -35,8 +45,7 @@ fn measure(bundle: &Bundle) -> Result<u64> {
         total += packed;
     }
     println!(
-        "{:<20} {:>18.1} kB of {:.0} kB allowed",
-        "on the wire",
+        "{when:<20} {:>18.1} kB of {:.0} kB allowed",
         kilo(total),
         kilo(BAR)
     );

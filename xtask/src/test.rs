@@ -8,7 +8,7 @@
 //! | golden files, properties, the bridge | `tests/tests/*.rs` | natively |
 //! | the page and `shared` in a browser | `frontend/tests/wasm_*.rs`, `tests/tests/wasm_*.rs` | headless, as wasm |
 //! | other implementations as peers | `tests/tests/peers.rs`, feature `peers` | natively |
-//! | end to end | `tests/tests/e2e.rs`, feature `browser` | the built binary and a browser |
+//! | end to end | `tests/tests/e2e*.rs`, feature `browser` | the built binary and a browser |
 //!
 //! A file `wasm_*.rs` begins with `#![cfg(target_arch = "wasm32")]`, so that it is empty natively.
 
@@ -65,9 +65,12 @@ fn steps(report: &mut Report) -> Result {
         shell::run(&mut native("build", &BINARY_AND_ITS_TESTS))?;
         log.run_tests("peers", peers.environment(&mut with_binary("peers")))
     })?;
-    report.step("end to end", |log| {
-        log.run_tests("e2e", browser.environment(&mut with_binary("e2e")))
-    })
+    for test in ["e2e", "e2e_dop"] {
+        report.step("end to end", |log| {
+            log.run_tests(test, browser.environment(&mut with_binary(test)))
+        })?;
+    }
+    Ok(())
 }
 
 /// A cargo verb over the packages tested natively.
@@ -79,13 +82,15 @@ fn native(verb: &str, args: &[&str]) -> Command {
 
 /// Selects the binary together with the tests that start it: without a test among the targets,
 /// cargo would leave out the dev-dependencies, unify other features and compile most of it again.
-const BINARY_AND_ITS_TESTS: [&str; 8] = [
+const BINARY_AND_ITS_TESTS: [&str; 10] = [
     "--bin",
     "valvescope",
     "--test",
     "peers",
     "--test",
     "e2e",
+    "--test",
+    "e2e_dop",
     "--features",
     BINARY_FEATURES,
 ];

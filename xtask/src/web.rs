@@ -5,13 +5,18 @@
 //! - Everything in `static/` except `dist/` is copied to `static/dist/` under the same name, so a
 //!   link in `index.html` is the same in the source and in the result.
 //! - `index.html` holds `<script type="module" src="boot.js"></script>` once. This module writes
-//!   `boot.js`, `valvescope.js` and `valvescope_bg.wasm`. Other scripts, and inline scripts, are
-//!   refused: the server's policy forbids them.
+//!   `boot.js`, and for each program `NAME.js` and `NAME_bg.wasm`. Other scripts, and inline
+//!   scripts, are refused: the server's policy forbids them.
 //! - Attributes stand in double quotes and links are relative: `<link rel="stylesheet"
 //!   href="css/app.css">`, `<link rel="icon" href="icons/favicon.svg">`. A style sheet may name
 //!   files by `url(…)`, but not `@import` another sheet.
 //! - Names are fixed, not hashed: the server answers with an `ETag`, so a changed file is noticed
 //!   and an unchanged one is not sent again. A `name.br` stands beside each file it makes smaller.
+//!
+//! # Programs
+//!
+//! `valvescope` is the page. The others are loaded by the page when they are wanted, through
+//! `window.valvescopeProgram(NAME)`, a function of `boot.js` that promises the exports of a program.
 //!
 //! # The single file
 //!
@@ -34,14 +39,30 @@ use std::path::{Path, PathBuf};
 use wasm_bindgen_cli_support::Bindgen;
 
 /// What starts the page; its own file, because the server's policy allows no inline script.
-const BOOT: &str = "import init from './valvescope.js';\ninit();\n";
+const BOOT: &str = include_str!("web/boot.js");
 
-/// The two files that a browser must load before it can show anything.
-pub struct Bundle {
+/// The page: its binary in `frontend`, and its name in the browser.
+const PAGE: (&str, &str) = ("frontend", "valvescope");
+
+/// The programs that the page loads when they are wanted; binary and name are the same.
+const LATER: [&str; 1] = ["diagnostics"];
+
+/// The files of one program.
+pub struct Program {
+    /// Its name in the browser.
+    pub name: &'static str,
     /// The program.
     pub wasm: PathBuf,
     /// Its glue.
     pub js: PathBuf,
+}
+
+/// What a browser loads.
+pub struct Bundle {
+    /// Before it can show anything.
+    pub page: Program,
+    /// When it is wanted.
+    pub later: Vec<Program>,
 }
 
 /// Builds the page into `static/dist`.
@@ -49,7 +70,7 @@ pub fn web() -> Result<Bundle> {
     toolchain::ensure_wasm_target()?;
     let source = shell::root().join("static");
     let dist = source.join("dist");
-    let program = compile()?;
+    let binaries = compile()?;
 
     let index = std::fs::read_to_string(source.join("index.html"))
         .map_err(|error| format!("static/index.html: {error}"))?;
@@ -57,11 +78,25 @@ pub fn web() -> Result<Bundle> {
 
     let mut output = files::Folder::open(&dist)?;
     output.copy_tree(&source, &["dist"])?;
-    let modules = Glue::generate(&program, Mode::Modules)?;
     output.write("boot.js", BOOT.as_bytes())?;
-    let js = output.write("valvescope.js", modules.js.as_bytes())?;
-    let wasm = output.write("valvescope_bg.wasm", &modules.wasm)?;
-    let single = single::page(&source, &index, &Glue::generate(&program, Mode::Classic)?)?;
+    let mut write = |(binary, name): (&str, &'static str)| -> Result<(Program, Glue)> {
+        let binary = binaries.join(binary).with_extension("wasm");
+        let modules = Glue::generate(&binary, name, Mode::Modules)?;
+        let program = Program {
+            name,
+            js: output.write(&format!("{name}.js"), modules.js.as_bytes())?,
+            wasm: output.write(&format!("{name}_bg.wasm"), &modules.wasm)?,
+        };
+        Ok((program, Glue::generate(&binary, name, Mode::Classic)?))
+    };
+    let (page, glue) = write(PAGE)?;
+    let (mut later, mut later_glue) = (Vec::new(), Vec::new());
+    for name in LATER {
+        let (program, glue) = write((name, name))?;
+        later.push(program);
+        later_glue.push((name, glue));
+    }
+    let single = single::page(&source, &index, &glue, &later_glue)?;
     output.write("valvescope.html", single.as_bytes())?;
     compress::all(&mut output)?;
     output.remove_the_rest()?;
@@ -69,24 +104,34 @@ pub fn web() -> Result<Bundle> {
         "the page is in {}",
         dist.strip_prefix(shell::root()).unwrap_or(&dist).display()
     );
-    Ok(Bundle { wasm, js })
+    Ok(Bundle { page, later })
 }
 
-/// Compiles the page, and returns the raw wasm file.
+/// Compiles all programs, and returns the folder of the raw wasm files.
+///
+/// The page decodes captures of any size, so the code of `shared` is fast there (see the profile);
+/// the programs that come later decode one object at a time, so theirs is small.
 fn compile() -> Result<PathBuf> {
     let args = [
         "build",
         "-p",
-        "frontend",
-        "--bin",
         "frontend",
         "--profile",
         "web",
         "--target",
         WASM,
     ];
-    shell::run(shell::cargo(args).env("CARGO_ENCODED_RUSTFLAGS", flags()))?;
-    Ok(shell::target_dir().join(WASM).join("web/frontend.wasm"))
+    let mut page = shell::cargo(args);
+    page.args(["--bin", PAGE.0]);
+    let mut later = shell::cargo(args);
+    later.args(["--config", "profile.web.package.shared.opt-level=\"z\""]);
+    for binary in LATER {
+        later.args(["--bin", binary]);
+    }
+    for command in [&mut page, &mut later] {
+        shell::run(command.env("CARGO_ENCODED_RUSTFLAGS", flags()))?;
+    }
+    Ok(shell::target_dir().join(WASM).join("web"))
 }
 
 /// The flags of `.cargo/config.toml`, which this variable replaces, and short names for the places
@@ -128,11 +173,11 @@ struct Glue {
 
 impl Glue {
     /// Runs wasm-bindgen, whose version is locked to that of the library.
-    fn generate(program: &Path, mode: Mode) -> Result<Self> {
+    fn generate(program: &Path, name: &str, mode: Mode) -> Result<Self> {
         let mut bindgen = Bindgen::new();
         bindgen
             .input_path(program)
-            .out_name("valvescope")
+            .out_name(name)
             .typescript(false)
             // Names of functions are a third of the file; a panic still tells its place.
             .remove_name_section(true)
@@ -140,7 +185,10 @@ impl Glue {
             .omit_default_module_path(false);
         match mode {
             Mode::Modules => bindgen.web(true),
-            Mode::Classic => bindgen.no_modules(true),
+            // Classic scripts share one space of names.
+            Mode::Classic => bindgen
+                .no_modules(true)
+                .and_then(|bindgen| bindgen.no_modules_global(name)),
         }
         .map_err(|error| format!("wasm-bindgen: {error:?}"))?;
         let mut output = bindgen

@@ -1,11 +1,13 @@
 //! The actor of a line: keeps it open, decides what is asked next, and asks.
 
 use super::board::Board;
+use super::dop::DopUnit;
+use super::gate::Gate;
 use super::open::{Line, Plug};
 use super::recorder::Recorder;
 use super::timing::Timing;
-use super::unit::{Job, Origin, Unit};
-use super::{Answer, Command, Fault, Handle, INBOX, Report, words};
+use super::unit::{Ask, Job, Origin, Unit};
+use super::{Command, Fault, Handle, INBOX, Report, words};
 use crate::clock::Clock;
 use crate::config::{BusConfig, DeviceConfig};
 use shared::proto::{LineState, Outcome, ToPage};
@@ -34,11 +36,14 @@ pub fn start(
     recorder: Recorder,
 ) -> Handle {
     let (commands, inbox) = mpsc::channel(INBOX);
-    let units = devices
-        .iter()
-        .map(|d| Unit::new(d.tag.clone(), d.unit, board.slot(), d.device.is_icon()))
-        .collect();
+    let gate = Gate::of(devices);
+    let unit = |d: &DeviceConfig| {
+        let dop = DopUnit::of(d, &gate);
+        Unit::new(d.tag.clone(), d.unit, board.slot(), d.device.is_icon(), dop)
+    };
+    let units = devices.iter().map(unit).collect();
     let actor = Actor {
+        gate,
         timing: Timing::of(&bus),
         slot: board.slot(),
         bus,
@@ -57,6 +62,8 @@ pub fn start(
 
 struct Actor {
     bus: BusConfig,
+    /// What may be written on this line.
+    gate: Gate,
     timing: Timing,
     units: Vec<Unit>,
     plug: Plug,
@@ -84,7 +91,8 @@ impl Actor {
         let mut wait = FIRST_RETRY;
         let mut said = String::new();
         loop {
-            let opened = Line::open(&self.bus, self.recorder.clone(), &mut self.plug).await;
+            let (gate, recorder) = (self.gate.clone(), self.recorder.clone());
+            let opened = Line::open(&self.bus, gate, recorder, &mut self.plug).await;
             let error = match opened {
                 Ok(mut line) => {
                     wait = FIRST_RETRY;
@@ -131,9 +139,12 @@ impl Actor {
                 .into_iter()
                 .chain(again.and_then(|job| match job.origin {
                     Origin::Once(reply) => Some(reply),
-                    Origin::Watch => None,
+                    Origin::Watch | Origin::Dop | Origin::Indicators => None,
                 }));
-            replies.for_each(|reply| reply(down(text)));
+            if let Some(dop) = &mut unit.dop {
+                dop.down(text);
+            }
+            replies.for_each(|reply| reply(Report::down(text)));
             if watched {
                 self.state(at, Outcome::Down, text.to_owned());
             }
@@ -148,13 +159,15 @@ impl Actor {
                 () = sleep_until(until) => return true,
                 command = self.inbox.recv() => match command {
                     None => return false,
-                    Some(Command::Read { reply, .. }) => reply(down(text)),
+                    Some(Command::Read { reply, .. }) => reply(Report::down(text)),
                     Some(command) => {
                         let watched = match &command {
                             Command::Watch { device, reads, .. } if !reads.is_empty() => Some(*device),
                             _ => None,
                         };
                         self.obey(command);
+                        let objects = self.units.iter_mut().filter_map(|u| u.dop.as_mut());
+                        objects.for_each(|d| d.down(text));
                         if let Some(device) = watched {
                             self.state(device, Outcome::Down, text.to_owned());
                         }
@@ -179,7 +192,7 @@ impl Actor {
                 Ok(at) => {
                     let job = self.units.get_mut(at).and_then(|u| {
                         u.open = None;
-                        u.take(self.bus.retries, now)
+                        u.take(self.bus.retries, now, self.clock)
                     });
                     if let Some(job) = job
                         && let Err(error) = self.attempt(line, at, job).await
@@ -212,11 +225,10 @@ impl Actor {
                 reply,
             } => match self.units.get_mut(device) {
                 Some(unit) => unit.once.push_back((read, reply)),
-                None => reply(Report {
-                    outcome: Outcome::Refused,
-                    text: "there is no such device".into(),
-                    pdu: None,
-                }),
+                None => {
+                    let text = "there is no such device".to_owned();
+                    reply(Report::failed(Outcome::Refused, text));
+                }
             },
             Command::Watch {
                 client,
@@ -228,32 +240,44 @@ impl Actor {
                     unit.plan.set(client, &reads, period, Instant::now());
                 }
             }
+            Command::Dop {
+                client,
+                device,
+                ask,
+                out,
+            } => {
+                if let Some(dop) = self.units.get_mut(device).and_then(|u| u.dop.as_mut()) {
+                    dop.ask(client, ask, out);
+                }
+            }
             Command::Leave { client } => {
-                self.units.iter_mut().for_each(|u| u.plan.leave(client));
+                for unit in &mut self.units {
+                    unit.plan.leave(client);
+                    if let Some(dop) = &mut unit.dop {
+                        dop.leave(client);
+                    }
+                }
             }
         }
     }
 
     /// The device whose turn it is, else when there will be something to do.
-    fn choose(&self, stray: Option<Instant>, now: Instant) -> Result<usize, Option<Instant>> {
-        let count = self.units.len();
-        let order = (1..=count).map(|step| (self.turn + step) % count);
+    fn choose(&mut self, stray: Option<Instant>, now: Instant) -> Result<usize, Option<Instant>> {
+        let (count, turn, clock) = (self.units.len(), self.turn, self.clock);
+        let mut wake = None;
         for only_once in [true, false] {
-            for at in order.clone() {
-                let next = self
-                    .units
-                    .get(at)
-                    .and_then(|u| u.next(stray, only_once, now));
-                if next.is_some_and(|due| due <= now) {
+            for at in (1..=count).map(|step| (turn + step) % count) {
+                let unit = self.units.get_mut(at);
+                let Some(due) = unit.and_then(|u| u.next(stray, only_once, now, clock)) else {
+                    continue;
+                };
+                if due <= now {
                     return Ok(at);
                 }
+                wake = Some(wake.map_or(due, |earlier: Instant| earlier.min(due)));
             }
         }
-        Err(self
-            .units
-            .iter()
-            .filter_map(|u| u.next(stray, false, now))
-            .min())
+        Err(wake)
     }
 
     /// Asks a device once and deals with what comes of it. An error means that the line is lost.
@@ -264,7 +288,13 @@ impl Actor {
         };
         let address = unit.address;
         let answer = match resync(line, unit, &mut self.nonce).await {
-            Ok(()) => line.read(address, job.read).await,
+            Ok(()) => match &job.ask {
+                Ask::Read(read) => line.read(address, *read).await,
+                Ask::Dop(permit) => {
+                    tracing::debug!("{}: asks for {}", unit.tag, permit.request());
+                    line.write(permit).await
+                }
+            },
             Err(fault) => Err(fault),
         };
         job.tried = job.tried.saturating_add(1);
@@ -273,7 +303,7 @@ impl Actor {
             Ok(answer) => {
                 unit.latency = Some(answer.latency);
                 unit.last_ok = Some(self.clock.at(now));
-                report(answer)
+                Report::of(answer)
             }
             Err(Fault::Line(error)) if error.kind() != io::ErrorKind::PermissionDenied => {
                 // Those who wait are told with the others.
@@ -281,18 +311,15 @@ impl Actor {
                 return Err(error);
             }
             Err(fault) => {
-                let quarantine = self.timing.quarantine(job.read.response_len(), unit.echo);
+                let quarantine = self.timing.quarantine(job.ask.response_len(), unit.echo);
                 unit.failed(&fault, quarantine, now);
                 if job.left > 0 {
                     job.left -= 1;
                     unit.again = Some(job);
                     return Ok(());
                 }
-                Report {
-                    outcome: words::outcome(&fault),
-                    text: words::fault(&fault, &self.bus, address, job.tried),
-                    pdu: None,
-                }
+                let text = words::fault(&fault, &self.bus, address, job.tried);
+                Report::failed(words::outcome(&fault), text)
             }
         };
         unit.ended(report.outcome, now);
@@ -304,8 +331,19 @@ impl Actor {
                 false
             }
             Origin::Watch => {
-                unit.plan.done(job.read, now);
+                if let Ask::Read(read) = job.ask {
+                    unit.plan.done(read, now);
+                }
                 unit.plan.due(now).is_none()
+            }
+            Origin::Dop | Origin::Indicators => {
+                let at = self.clock.at(now);
+                match (&mut unit.dop, job.origin) {
+                    (Some(dop), Origin::Dop) => dop.reply(&report, at),
+                    (Some(dop), _) => dop.indicators(&report, at),
+                    (None, _) => {}
+                }
+                false
             }
         };
         // A plan that is too much for the line never comes to the end of its round.
@@ -358,29 +396,4 @@ async fn resync(line: &mut Line, unit: &mut Unit, nonce: &mut u16) -> Result<(),
     }
     unit.resync = false;
     Ok(())
-}
-
-/// What an answer says.
-fn report(answer: Answer) -> Report {
-    match answer.pdu.as_slice() {
-        [function, code] if *function >= 0x80 => Report {
-            outcome: Outcome::Exception,
-            text: words::exception(*code),
-            pdu: None,
-        },
-        _ => Report {
-            outcome: Outcome::Ok,
-            text: words::good(answer.latency),
-            pdu: Some(answer.pdu),
-        },
-    }
-}
-
-/// The line is not there.
-fn down(text: &str) -> Report {
-    Report {
-        outcome: Outcome::Down,
-        text: text.to_owned(),
-        pdu: None,
-    }
 }

@@ -47,7 +47,8 @@ pub struct Found {
 #[must_use]
 pub fn find(asked: &Asked<'_>, bytes: &[u8], echoes: bool) -> Found {
     let mut found = Found::default();
-    let is_echo_request = asked.pdu.first() == Some(&8);
+    // A write of one register is answered by itself as well.
+    let is_echo_request = matches!(asked.pdu.first(), Some(6 | 8));
     let mut bytes = bytes;
     // The answer to an echo request looks like the request; only a line known to repeat sends two.
     if (echoes || !is_echo_request)
@@ -109,7 +110,7 @@ fn sound(framing: Framing, bytes: &[u8]) -> Option<(usize, u8, Vec<u8>)> {
             crc_holds(frame).then_some(())?;
             Some((frame.len(), *frame.first()?, pdu_of(frame, framing)?))
         }
-        Framing::Tcp => None,
+        Framing::Tcp | Framing::Hart | Framing::HartIp => None,
     }
 }
 
@@ -129,7 +130,9 @@ fn answers(asked: &Asked<'_>, pdu: &[u8]) -> bool {
             .get(1)
             .is_some_and(|count| usize::from(*count) + 2 == pdu.len()),
         // An echo that differs answers another request.
-        8 => pdu == asked.pdu,
+        6 | 8 => pdu == asked.pdu,
+        // Address and quantity.
+        16 => asked.pdu.get(..5) == Some(pdu),
         _ => true,
     }
 }

@@ -1,20 +1,200 @@
-//! The last thing that stands before a line: only reads pass.
+//! The last thing that stands before a line: reads pass, and one write.
 //!
-//! Above this there is no type that could say anything but a read; this holds even if somebody
-//! adds one. It looks at the bytes themselves.
+//! The one write is the request for a diagnostic object: one register, at the address that the
+//! profile of a device declared as DOP gives, with a word that names a known object and option of
+//! it. Nothing else that writes can be said above this; and this looks at the bytes themselves, so
+//! that it holds even if somebody adds something.
 
 use shared::decode::pdu_of;
+use shared::device::Device;
+use shared::dop::{Profile, Request};
 use shared::encode;
 use shared::frame::Framing;
 use shared::frame::ascii::hex_pair;
 use shared::pdu::length::{Length, request};
+use std::sync::Arc;
 
-/// A frame that is not a read. It never leaves.
+use crate::config::DeviceConfig;
+
+/// A frame that may not be sent. It never leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("function code {function:02} is not a read and was not sent; this program only reads")]
+#[error(
+    "function code {function:02} is neither a read nor the request for a diagnostic object and was \
+     not sent; this program only reads"
+)]
 pub struct NotARead {
     /// What the frame would have asked for.
     pub function: u8,
+}
+
+/// Why there is no permit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Denied {
+    /// The unit is not declared as DOP, or its profile has no request register.
+    #[error("unit {0} has no request register in the configuration")]
+    NoTarget(u8),
+    /// The word names no object and option that are known.
+    #[error("0x{0:04X} names no known object and option, and was not sent")]
+    Unknown(u16),
+}
+
+/// What may be written on one line: the request registers of its DOP devices. Cheap to clone.
+#[derive(Clone, Debug, Default)]
+pub struct Gate {
+    targets: Arc<[Target]>,
+}
+
+/// The request register of one device.
+#[derive(Debug)]
+struct Target {
+    unit: u8,
+    address: u16,
+    function: u8,
+    profile: Arc<Profile>,
+}
+
+impl Target {
+    fn pdu(&self, request: Request) -> Vec<u8> {
+        let [a, b] = self.address.to_be_bytes();
+        let [c, d] = request.word().to_be_bytes();
+        match self.function {
+            16 => vec![16, a, b, 0, 1, 2, c, d],
+            _ => vec![6, a, b, c, d],
+        }
+    }
+}
+
+/// Leave to write one request for a diagnostic object. Only a [`Gate`] makes them.
+#[derive(Debug)]
+pub struct DopPermit {
+    unit: u8,
+    address: u16,
+    function: u8,
+    request: Request,
+    pdu: Vec<u8>,
+}
+
+impl DopPermit {
+    /// The unit that is asked.
+    #[must_use]
+    pub const fn unit(&self) -> u8 {
+        self.unit
+    }
+
+    /// The address of its request register.
+    #[must_use]
+    pub const fn address(&self) -> u16 {
+        self.address
+    }
+
+    /// The function code: 6, or 16 with one register.
+    #[must_use]
+    pub const fn function(&self) -> u8 {
+        self.function
+    }
+
+    /// What is asked for.
+    #[must_use]
+    pub const fn request(&self) -> Request {
+        self.request
+    }
+
+    /// The request PDU.
+    #[must_use]
+    pub fn pdu(&self) -> &[u8] {
+        &self.pdu
+    }
+
+    /// Length of a good response PDU, which is the same for both functions.
+    #[must_use]
+    pub const fn response_len(&self) -> usize {
+        5
+    }
+}
+
+impl Gate {
+    /// The gate of a line with these devices. Whatever is not declared as DOP, or has no address
+    /// for the request, can't be written to at all.
+    #[must_use]
+    pub fn of(devices: &[DeviceConfig]) -> Self {
+        let target = |device: &DeviceConfig| {
+            let profile = device.profile.as_ref()?;
+            (device.device == Device::Dop).then_some(())?;
+            Some(Target {
+                unit: device.unit,
+                address: profile.registers.request?,
+                function: match profile.request_function() {
+                    16 => 16,
+                    _ => 6,
+                },
+                profile: Arc::clone(profile),
+            })
+        };
+        Self {
+            targets: devices.iter().filter_map(target).collect(),
+        }
+    }
+
+    /// Leave to ask a unit for a diagnostic object.
+    ///
+    /// # Errors
+    /// If the unit has no request register, or nobody knows what is asked for.
+    pub fn permit(&self, unit: u8, request: Request) -> Result<DopPermit, Denied> {
+        let target = self.targets.iter().find(|t| t.unit == unit);
+        let target = target.ok_or(Denied::NoTarget(unit))?;
+        if !request.is_known(&target.profile) {
+            return Err(Denied::Unknown(request.word()));
+        }
+        Ok(DopPermit {
+            unit,
+            address: target.address,
+            function: target.function,
+            request,
+            pdu: target.pdu(request),
+        })
+    }
+
+    /// True if this PDU is the request for a diagnostic object of this unit, to the byte.
+    fn is_request(&self, unit: u8, pdu: &[u8]) -> bool {
+        let word = match pdu {
+            [6, _, _, high, low] | [16, _, _, 0, 1, 2, high, low] => {
+                u16::from_be_bytes([*high, *low])
+            }
+            _ => return false,
+        };
+        self.permit(unit, Request::from_word(word))
+            .is_ok_and(|permit| permit.pdu == pdu)
+    }
+
+    /// Checks a whole frame before its first byte is sent: it must be one read, or one permitted
+    /// request for a diagnostic object, complete, and nothing else.
+    ///
+    /// # Errors
+    /// If the bytes are anything else.
+    pub fn admit(&self, framing: Framing, frame: &[u8]) -> Result<(), NotARead> {
+        let pdu = pdu_of(frame, framing).unwrap_or_default();
+        let unit = match framing {
+            Framing::Rtu => frame.first().copied(),
+            Framing::Ascii => frame.get(1..3).and_then(hex_pair),
+            Framing::Tcp => frame.get(6).copied(),
+            // No HART command leaves through this gate.
+            Framing::Hart | Framing::HartIp => None,
+        };
+        let transaction = match (framing, frame) {
+            (Framing::Tcp, [high, low, ..]) => u16::from_be_bytes([*high, *low]),
+            _ => 0,
+        };
+        let complete = request(&pdu) == Length::Exact(pdu.len());
+        // Nothing may hide behind it: the frame made from this PDU has to be this frame.
+        let whole = |unit| encode::frame(framing, transaction, unit, &pdu) == frame;
+        let allowed = |unit| is_read(&pdu) || self.is_request(unit, &pdu);
+        match unit {
+            Some(unit) if complete && whole(unit) && allowed(unit) => Ok(()),
+            _ => Err(NotARead {
+                function: pdu.first().copied().unwrap_or(0),
+            }),
+        }
+    }
 }
 
 /// True for PDUs that change nothing in a device.
@@ -28,33 +208,6 @@ pub fn is_read(pdu: &[u8]) -> bool {
         pdu,
         [1..=4 | 7 | 11 | 12 | 17 | 20 | 24, ..] | [8, 0, 0, ..] | [43, 0x0E, ..]
     )
-}
-
-/// Checks a whole frame before its first byte is sent: it must be one read request, complete, and
-/// nothing else.
-///
-/// # Errors
-/// If the bytes are anything else.
-pub fn admit(framing: Framing, frame: &[u8]) -> Result<(), NotARead> {
-    let pdu = pdu_of(frame, framing).unwrap_or_default();
-    // Nothing may hide behind a read: the frame made from this PDU has to be this frame.
-    let unit = match framing {
-        Framing::Rtu => frame.first().copied(),
-        Framing::Ascii => frame.get(1..3).and_then(hex_pair),
-        Framing::Tcp => frame.get(6).copied(),
-    };
-    let transaction = match (framing, frame) {
-        (Framing::Tcp, [high, low, ..]) => u16::from_be_bytes([*high, *low]),
-        _ => 0,
-    };
-    let complete = request(&pdu) == Length::Exact(pdu.len());
-    let whole = unit.is_some_and(|u| encode::frame(framing, transaction, u, &pdu) == frame);
-    if is_read(&pdu) && complete && whole {
-        return Ok(());
-    }
-    Err(NotARead {
-        function: pdu.first().copied().unwrap_or(0),
-    })
 }
 
 /// A complete request of every function code: with the length that the standard gives it, and
@@ -82,57 +235,4 @@ pub(super) fn every_function() -> impl Iterator<Item = Vec<u8>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use shared::encode::frame;
-
-    /// Every function code in every framing, each as a complete request.
-    #[test]
-    fn only_reads_pass() {
-        let allowed = [1, 2, 3, 4, 7, 8, 11, 12, 17, 20, 24, 43];
-        for framing in Framing::ALL {
-            for pdu in every_function() {
-                let passed = admit(framing, &frame(framing, 1, 1, &pdu)).is_ok();
-                assert_eq!(passed, allowed.contains(&pdu[0]), "{framing:?} {pdu:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn nothing_hides_behind_a_read() {
-        for framing in Framing::ALL {
-            let read = frame(framing, 1, 1, &[3, 0, 0, 0, 1]);
-            let write = frame(framing, 1, 1, &[6, 0, 0, 0, 1]);
-            assert!(admit(framing, &read).is_ok());
-            assert!(admit(framing, &[read, write].concat()).is_err());
-        }
-    }
-
-    #[test]
-    fn sub_functions_count() {
-        let passes = |pdu: &[u8]| admit(Framing::Rtu, &frame(Framing::Rtu, 0, 1, pdu)).is_ok();
-        for sub in 0..=300_u16 {
-            let [high, low] = sub.to_be_bytes();
-            assert_eq!(passes(&[8, high, low, 0, 0]), sub == 0, "{sub}");
-        }
-        assert!(passes(&[43, 14, 1, 0]));
-        assert!(!passes(&[43, 13, 0, 0]));
-        assert!(!passes(&[43]));
-    }
-
-    #[test]
-    fn fragments_do_not_pass() {
-        for framing in Framing::ALL {
-            for bytes in [
-                &b""[..],
-                &[1],
-                &[1, 3],
-                b":",
-                b":01",
-                &[0, 1, 0, 0, 0, 6, 1],
-            ] {
-                assert!(admit(framing, bytes).is_err(), "{framing:?} {bytes:?}");
-            }
-        }
-    }
-}
+mod tests;

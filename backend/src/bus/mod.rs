@@ -4,6 +4,7 @@ mod actor;
 mod alarm;
 mod answer;
 pub mod board;
+mod dop;
 pub mod gate;
 pub mod master;
 mod open;
@@ -16,10 +17,11 @@ mod unit;
 pub(crate) mod words;
 
 pub use actor::start;
+pub use dop::Outlet;
 pub use open::Plug;
 
 use shared::encode::Read;
-use shared::proto::Outcome;
+use shared::proto::{DopAsk, Outcome};
 use std::io;
 use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
@@ -31,7 +33,7 @@ const INBOX: usize = 256;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ClientId(pub u64);
 
-/// What an actor is asked to do. There is nothing here that writes.
+/// What an actor is asked to do. There is nothing here that carries a value or an address to write.
 pub enum Command {
     /// Read once.
     Read {
@@ -53,6 +55,17 @@ pub enum Command {
         /// From one round to the next.
         period: Duration,
     },
+    /// About the diagnostic objects of a device.
+    Dop {
+        /// Who wants it.
+        client: ClientId,
+        /// Index of the device on this bus.
+        device: usize,
+        /// What is wanted.
+        ask: DopAsk,
+        /// Gets what comes of it.
+        out: Outlet,
+    },
     /// The client is gone, and its watches with it.
     Leave {
         /// Who.
@@ -72,6 +85,43 @@ pub struct Report {
     pub text: String,
     /// The response PDU of a good answer.
     pub pdu: Option<Vec<u8>>,
+    /// The code of an exception.
+    pub code: Option<u8>,
+}
+
+impl Report {
+    /// What an answer says.
+    fn of(answer: Answer) -> Self {
+        match answer.pdu.as_slice() {
+            [function, code] if *function >= 0x80 => Self {
+                outcome: Outcome::Exception,
+                text: words::exception(*code),
+                pdu: None,
+                code: Some(*code),
+            },
+            _ => Self {
+                outcome: Outcome::Ok,
+                text: words::good(answer.latency),
+                pdu: Some(answer.pdu),
+                code: None,
+            },
+        }
+    }
+
+    /// Nothing was answered.
+    fn failed(outcome: Outcome, text: String) -> Self {
+        Self {
+            outcome,
+            text,
+            pdu: None,
+            code: None,
+        }
+    }
+
+    /// The line is not there.
+    fn down(text: &str) -> Self {
+        Self::failed(Outcome::Down, text.to_owned())
+    }
 }
 
 /// An answer: good, or an exception. Its shape is that of an answer to the request.
@@ -139,11 +189,8 @@ impl Handle {
             reply,
         };
         self.ask(command).await;
-        receiver.await.unwrap_or_else(|_| Report {
-            outcome: Outcome::Down,
-            text: "the program is ending".into(),
-            pdu: None,
-        })
+        let ending = |_| Report::down("the program is ending");
+        receiver.await.unwrap_or_else(ending)
     }
 
     /// What was on the line.

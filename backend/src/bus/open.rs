@@ -1,6 +1,7 @@
 //! Opening a line.
 
 use super::alarm::Alarm;
+use super::gate::{DopPermit, Gate};
 use super::master::{Master, Request, Stream};
 use super::recorder::Recorder;
 use super::tap::Tap;
@@ -35,14 +36,19 @@ pub enum Line {
 
 impl Line {
     /// Opens the line of a bus.
-    pub async fn open(bus: &BusConfig, recorder: Recorder, plug: &mut Plug) -> io::Result<Self> {
+    pub async fn open(
+        bus: &BusConfig,
+        gate: Gate,
+        recorder: Recorder,
+        plug: &mut Plug,
+    ) -> io::Result<Self> {
         let framing = bus.line.framing();
         let timing = Timing::of(bus);
         let mut alarm = Alarm::default();
         let stream: Box<dyn Stream> = match (&bus.line, plug) {
             (_, Plug::Stream(make)) => make()?,
             (LineConfig::Tcp { host }, _) => {
-                let remote = Remote::connect(host, bus.timeout, recorder).await?;
+                let remote = Remote::connect(host, bus.timeout, gate, recorder).await?;
                 return Ok(Self::Tcp(remote));
             }
             (
@@ -67,7 +73,7 @@ impl Line {
                 return Err(io::Error::other("nothing is simulated here"));
             }
         };
-        let tap = Tap::new(stream, framing, recorder);
+        let tap = Tap::new(stream, framing, gate, recorder);
         let master = Master::new(tap, framing, timing, alarm);
         Ok(Self::Serial(Box::new(master)))
     }
@@ -84,6 +90,21 @@ impl Line {
                 master.exchange(request).await
             }
             Self::Tcp(remote) => remote.read(unit, read).await,
+        }
+    }
+
+    /// Writes the request for a diagnostic object.
+    pub async fn write(&mut self, permit: &DopPermit) -> Result<Answer, Fault> {
+        match self {
+            Self::Serial(master) => {
+                let request = Request {
+                    unit: permit.unit(),
+                    pdu: permit.pdu(),
+                    response_len: permit.response_len(),
+                };
+                master.exchange(request).await
+            }
+            Self::Tcp(remote) => remote.write(permit).await,
         }
     }
 

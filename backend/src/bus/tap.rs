@@ -1,6 +1,6 @@
 //! The bottom of every line: checks what goes out, records what goes either way.
 
-use super::gate;
+use super::gate::{Gate, NotARead};
 use super::recorder::Recorder;
 use shared::frame::Framing;
 use std::io;
@@ -13,6 +13,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 pub struct Tap<T> {
     inner: T,
     framing: Framing,
+    gate: Gate,
     recorder: Recorder,
     /// Bytes of an admitted frame that the line has not taken yet.
     admitted: usize,
@@ -20,10 +21,11 @@ pub struct Tap<T> {
 
 impl<T> Tap<T> {
     /// Puts the tap on a stream.
-    pub const fn new(inner: T, framing: Framing, recorder: Recorder) -> Self {
+    pub const fn new(inner: T, framing: Framing, gate: Gate, recorder: Recorder) -> Self {
         Self {
             inner,
             framing,
+            gate,
             recorder,
             admitted: 0,
         }
@@ -42,7 +44,7 @@ impl<T: AsyncWrite + Unpin> AsyncWrite for Tap<T> {
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
         if self.admitted == 0 {
-            gate::admit(self.framing, bytes).map_err(refused)?;
+            self.gate.admit(self.framing, bytes).map_err(refused)?;
             self.admitted = bytes.len();
         }
         let bytes = bytes.get(..self.admitted).unwrap_or(bytes);
@@ -79,14 +81,18 @@ impl<T: AsyncRead + Unpin> AsyncRead for Tap<T> {
     }
 }
 
-fn refused(why: gate::NotARead) -> io::Error {
+fn refused(why: NotARead) -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, why)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::gate;
     use super::*;
     use crate::clock::Clock;
+    use crate::config::DeviceConfig;
+    use shared::device::Device;
+    use shared::dop::Profile;
     use shared::encode::frame;
     use tokio::io::{AsyncReadExt, AsyncWriteExt, duplex};
     use tokio::sync::watch;
@@ -94,13 +100,13 @@ mod tests {
     fn tap(framing: Framing) -> (Tap<tokio::io::DuplexStream>, tokio::io::DuplexStream) {
         let (near, far) = duplex(1 << 16);
         let recorder = Recorder::new("a", Clock::start(), watch::Sender::new(0));
-        (Tap::new(near, framing, recorder), far)
+        (Tap::new(near, framing, Gate::default(), recorder), far)
     }
 
     /// Counts bytes on the line for all 256 function codes: nothing of a write gets out.
     #[tokio::test]
     async fn nothing_but_reads_reaches_the_line() {
-        for framing in Framing::ALL {
+        for framing in Framing::MODBUS {
             let (mut tap, mut far) = tap(framing);
             let mut expected = Vec::new();
             for pdu in gate::every_function() {
@@ -117,6 +123,66 @@ mod tests {
             far.read_to_end(&mut seen).await.unwrap();
             assert_eq!(seen, expected, "{framing:?}");
             assert_eq!(captures, 12);
+        }
+    }
+
+    /// Counts bytes on the line of a DOP device: all function codes, all words to its request
+    /// register, all addresses, other units. Only the 65 requests of the manual get out.
+    #[tokio::test]
+    async fn of_all_writes_only_known_requests_reach_the_line() {
+        let profile = Profile::from_json(r#"{"registers":{"request":4000}}"#).unwrap();
+        let device = DeviceConfig {
+            tag: "MX-1".into(),
+            device: Device::Dop,
+            bus: 0,
+            unit: 4,
+            description: String::new(),
+            profile: Some(profile.into()),
+        };
+        let write = |address: u16, word: u16| {
+            let ([a, b], [c, d]) = (address.to_be_bytes(), word.to_be_bytes());
+            [
+                vec![6, a, b, c, d],
+                vec![16, a, b, 0, 1, 2, c, d],
+                vec![22, a, b, c, d, c, d],
+            ]
+        };
+        for framing in Framing::MODBUS {
+            let (mut tap, mut far) = tap(framing);
+            tap.gate = Gate::of(std::slice::from_ref(&device));
+            let words = (0..=u16::MAX).flat_map(|word| write(4000, word));
+            let addresses = (0..=u16::MAX).flat_map(|address| write(address, 0x1001));
+            let writes = words
+                .map(|pdu| (4, pdu))
+                .chain(addresses.map(|pdu| (4, pdu)))
+                .chain((0..=255).flat_map(|unit| write(4000, 1).map(|pdu| (unit, pdu))))
+                .chain(gate::every_function().map(|pdu| (4, pdu)));
+            let mut sent = Vec::new();
+            for (unit, pdu) in writes {
+                let is_read = gate::is_read(&pdu);
+                let bytes = frame(framing, 7, unit, &pdu);
+                if tap.write_all(&bytes).await.is_ok() && !is_read {
+                    sent.push((unit, pdu));
+                }
+            }
+            drop(tap);
+            let mut seen = Vec::new();
+            far.read_to_end(&mut seen).await.unwrap();
+            // 65 words, and once more each as the address 4000 and as the unit 4; all of function 6.
+            assert_eq!(sent.len(), 67, "{framing:?}");
+            assert!(
+                sent.iter()
+                    .all(|(unit, pdu)| *unit == 4 && pdu[..3] == [6, 0x0F, 0xA0])
+            );
+            // Besides these there are the twelve reads among all functions, and nothing else.
+            let reads = gate::every_function().filter(|pdu| gate::is_read(pdu));
+            let length: usize = sent
+                .iter()
+                .map(|(_, pdu)| pdu.clone())
+                .chain(reads)
+                .map(|pdu| frame(framing, 7, 4, &pdu).len())
+                .sum();
+            assert_eq!(seen.len(), length, "{framing:?}");
         }
     }
 
@@ -137,7 +203,7 @@ mod tests {
     async fn a_line_that_takes_little_at_a_time_gets_the_whole_frame() {
         let (near, mut far) = duplex(3);
         let recorder = Recorder::new("a", Clock::start(), watch::Sender::new(0));
-        let mut tap = Tap::new(near, Framing::Rtu, recorder);
+        let mut tap = Tap::new(near, Framing::Rtu, Gate::default(), recorder);
         let bytes = frame(Framing::Rtu, 0, 1, &[3, 0, 0, 0, 1]);
         let expected = bytes.clone();
         let write = tokio::spawn(async move { tap.write_all(&bytes).await });

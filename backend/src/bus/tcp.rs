@@ -3,6 +3,7 @@
 //! A connection on which anything went wrong is closed and opened again, so that an answer that
 //! comes late meets nobody. What the other side sends is checked before the library sees it.
 
+use super::gate::{DopPermit, Gate};
 use super::recorder::Recorder;
 use super::tap::Tap;
 use super::{Answer, Fault};
@@ -10,6 +11,7 @@ use shared::address::Table;
 use shared::encode::Read;
 use shared::frame::Framing;
 use shared::pdu::length::{self, Length};
+use std::borrow::Cow;
 use std::fmt;
 use std::io;
 use std::pin::Pin;
@@ -29,6 +31,7 @@ const CONNECT: Duration = Duration::from_secs(3);
 pub struct Remote {
     host: String,
     timeout: Duration,
+    gate: Gate,
     recorder: Recorder,
     modbus: Option<Modbus>,
 }
@@ -50,15 +53,17 @@ impl Remote {
     pub async fn connect(
         host: &str,
         timeout: Duration,
+        gate: Gate,
         recorder: Recorder,
     ) -> Result<Self, io::Error> {
         let mut remote = Self {
             host: host.to_owned(),
             timeout,
+            gate,
             recorder,
             modbus: None,
         };
-        remote.modbus = Some(attach(host, &remote.recorder).await?);
+        remote.modbus = Some(attach(host, &remote.gate, &remote.recorder).await?);
         Ok(remote)
     }
 
@@ -67,11 +72,6 @@ impl Remote {
     /// # Errors
     /// If no answer came, if it was not sound, or if the connection is lost.
     pub async fn read(&mut self, unit: u8, read: Read) -> Result<Answer, Fault> {
-        let mut modbus = match self.modbus.take() {
-            Some(modbus) => modbus,
-            None => attach(&self.host, &self.recorder).await?,
-        };
-        modbus.set_slave(Slave(unit));
         let (start, count) = (read.start.get(), read.count());
         let request = match read.table {
             Table::Coil => Request::ReadCoils(start, count),
@@ -79,6 +79,45 @@ impl Remote {
             Table::Input => Request::ReadInputRegisters(start, count),
             Table::Holding => Request::ReadHoldingRegisters(start, count),
         };
+        let function = read.table.read_function();
+        self.exchange(unit, function, request, |response| pdu(response, read))
+            .await
+    }
+
+    /// Writes the request for a diagnostic object.
+    ///
+    /// # Errors
+    /// As for a read.
+    pub async fn write(&mut self, permit: &DopPermit) -> Result<Answer, Fault> {
+        let (address, word) = (permit.address(), permit.request().word());
+        let request = match permit.function() {
+            16 => Request::WriteMultipleRegisters(address, Cow::Owned(vec![word])),
+            _ => Request::WriteSingleRegister(address, word),
+        };
+        let good = permit.pdu().get(..5).unwrap_or_default().to_vec();
+        let check = |response: &Response| match response {
+            Response::WriteSingleRegister(at, value) if (*at, *value) == (address, word) => {
+                Ok(good.clone())
+            }
+            Response::WriteMultipleRegisters(at, 1) if *at == address => Ok(good.clone()),
+            _ => Err(Fault::Damaged("another write was acknowledged".into())),
+        };
+        self.exchange(permit.unit(), permit.function(), request, check)
+            .await
+    }
+
+    async fn exchange(
+        &mut self,
+        unit: u8,
+        function: u8,
+        request: Request<'_>,
+        check: impl Fn(&Response) -> Result<Vec<u8>, Fault>,
+    ) -> Result<Answer, Fault> {
+        let mut modbus = match self.modbus.take() {
+            Some(modbus) => modbus,
+            None => attach(&self.host, &self.gate, &self.recorder).await?,
+        };
+        modbus.set_slave(Slave(unit));
         let sent = Instant::now();
         let outcome = timeout(self.timeout, modbus.call(request)).await;
         self.recorder.silence();
@@ -87,14 +126,13 @@ impl Remote {
         // Only after a sound answer the connection is kept: what else comes is not ours then.
         match outcome {
             Ok(Ok(Ok(response))) => {
-                let pdu = pdu(&response, read)?;
+                let pdu = check(&response)?;
                 self.modbus = Some(modbus);
                 Ok(answer(pdu))
             }
             Ok(Ok(Err(exception))) => {
                 self.modbus = Some(modbus);
-                let function = read.table.read_function() | 0x80;
-                Ok(answer(vec![function, exception.into()]))
+                Ok(answer(vec![function | 0x80, exception.into()]))
             }
             Ok(Err(tokio_modbus::Error::Transport(error))) => match error.kind() {
                 io::ErrorKind::InvalidData => Err(Fault::Damaged(error.to_string())),
@@ -108,9 +146,9 @@ impl Remote {
 }
 
 /// Opens a connection that is recorded and checked.
-async fn attach(host: &str, recorder: &Recorder) -> io::Result<Modbus> {
+async fn attach(host: &str, gate: &Gate, recorder: &Recorder) -> io::Result<Modbus> {
     let stream = connect(host).await?;
-    let tap = Tap::new(stream, Framing::Tcp, recorder.clone());
+    let tap = Tap::new(stream, Framing::Tcp, gate.clone(), recorder.clone());
     Ok(tcp::attach(Checked::new(tap)))
 }
 

@@ -1,8 +1,11 @@
 //! One device on a line, as its actor knows it: what is to be read, and whether its next answer
 //! could be that of an earlier request.
 
+use super::dop::{DopUnit, Step, until};
+use super::gate::DopPermit;
 use super::schedule::Plan;
 use super::{Fault, Reply};
+use crate::clock::Clock;
 use shared::capture::Micros;
 use shared::encode::Read;
 use shared::proto::Outcome;
@@ -21,18 +24,53 @@ pub enum Origin {
     Watch,
     /// Somebody who waits.
     Once(Reply),
+    /// The handshake of a diagnostic object.
+    Dop,
+    /// A watch of the user indicators.
+    Indicators,
 }
 
-/// A read that is under way or to be repeated.
+/// What is asked of a device.
+#[derive(Debug)]
+pub enum Ask {
+    /// A read.
+    Read(Read),
+    /// The request for a diagnostic object.
+    Dop(DopPermit),
+}
+
+impl Ask {
+    /// Length of a good response PDU.
+    #[must_use]
+    pub fn response_len(&self) -> usize {
+        match self {
+            Self::Read(read) => read.response_len(),
+            Self::Dop(permit) => permit.response_len(),
+        }
+    }
+}
+
+/// Something that is under way or to be repeated.
 pub struct Job {
-    /// What to read.
-    pub read: Read,
+    /// What to ask.
+    pub ask: Ask,
     /// Repetitions left.
     pub left: u8,
     /// Repetitions done.
     pub tried: u8,
     /// Who asked.
     pub origin: Origin,
+}
+
+impl Job {
+    const fn new(ask: Ask, left: u8, origin: Origin) -> Self {
+        Self {
+            ask,
+            left,
+            tried: 0,
+            origin,
+        }
+    }
 }
 
 /// One device.
@@ -51,6 +89,10 @@ pub struct Unit {
     pub once: VecDeque<(Read, Reply)>,
     /// What is to be repeated.
     pub again: Option<Job>,
+    /// Its diagnostic objects, if it has any.
+    pub dop: Option<DopUnit>,
+    /// The last thing done was for a diagnostic object: a watch goes first now.
+    dop_was_last: bool,
     /// When a request was given up whose answer may still come, and how long that may take.
     pub open: Option<(Instant, Duration)>,
     /// The next answer is to be trusted only after an echo.
@@ -71,7 +113,7 @@ pub struct Unit {
 impl Unit {
     /// A device of which nothing is known.
     #[must_use]
-    pub fn new(tag: String, address: u8, slot: usize, echo: bool) -> Self {
+    pub fn new(tag: String, address: u8, slot: usize, echo: bool, dop: Option<DopUnit>) -> Self {
         Self {
             tag,
             address,
@@ -80,6 +122,8 @@ impl Unit {
             plan: Plan::default(),
             once: VecDeque::new(),
             again: None,
+            dop,
+            dop_was_last: false,
             open: None,
             resync: false,
             hold: None,
@@ -100,7 +144,13 @@ impl Unit {
 
     /// When there will be something to do: for somebody who waits, or at all.
     #[must_use]
-    pub fn next(&self, stray: Option<Instant>, only_once: bool, now: Instant) -> Option<Instant> {
+    pub fn next(
+        &mut self,
+        stray: Option<Instant>,
+        only_once: bool,
+        now: Instant,
+        clock: Clock,
+    ) -> Option<Instant> {
         let waits = !self.once.is_empty()
             || matches!(&self.again, Some(job) if matches!(job.origin, Origin::Once(_)));
         let due = if waits {
@@ -114,34 +164,63 @@ impl Unit {
             } else {
                 self.plan.next_due().map(Some)
             };
-            due.map(|due| due.max(self.hold))
+            let watched = due.map(|due| due.max(self.hold));
+            let objects = self.dop_due(now, clock).map(Some);
+            match (watched, objects) {
+                (Some(watched), Some(objects)) => Some(watched.min(objects)),
+                (one, other) => one.or(other),
+            }
         };
         let due = due?;
         Some(due.max(self.released(stray)).unwrap_or(now))
     }
 
+    /// When the diagnostic objects go on.
+    fn dop_due(&mut self, now: Instant, clock: Clock) -> Option<Instant> {
+        let at = clock.at(now);
+        let due = self.dop.as_mut()?.due(at)?;
+        Some(now + until(due, at))
+    }
+
     /// Takes the next thing to do.
     #[must_use]
-    pub fn take(&mut self, retries: u8, now: Instant) -> Option<Job> {
+    pub fn take(&mut self, retries: u8, now: Instant, clock: Clock) -> Option<Job> {
         let again = self.again.take();
         if let Some(job) = again {
             // Somebody waits: the watch will come up again by itself.
-            if matches!(job.origin, Origin::Once(_)) || self.once.is_empty() {
+            if !matches!(job.origin, Origin::Watch) || self.once.is_empty() {
                 return Some(job);
             }
         }
-        let (read, origin) = match self.once.pop_front() {
-            Some((read, reply)) => (read, Origin::Once(reply)),
-            None => (self.plan.due(now)?, Origin::Watch),
-        };
+        if let Some((read, reply)) = self.once.pop_front() {
+            return Some(Job::new(Ask::Read(read), retries, Origin::Once(reply)));
+        }
+        // Watches and diagnostic objects take turns.
+        let watch = self
+            .plan
+            .due(now)
+            .filter(|_| self.hold.is_none_or(|hold| hold <= now));
+        if watch.is_none() || !self.dop_was_last {
+            let step = self.dop.as_mut().and_then(|d| d.take(clock.at(now)));
+            self.dop_was_last = step.is_some();
+            match step {
+                // The handshake itself knows whether a write may be repeated.
+                Some(Step::Write(permit)) => {
+                    return Some(Job::new(Ask::Dop(permit), 0, Origin::Dop));
+                }
+                Some(Step::Read(read)) => {
+                    return Some(Job::new(Ask::Read(read), retries, Origin::Dop));
+                }
+                Some(Step::Indicators(read)) => {
+                    return Some(Job::new(Ask::Read(read), 0, Origin::Indicators));
+                }
+                None => {}
+            }
+        }
+        self.dop_was_last = false;
         // A device known to be silent is tried, not pressed.
-        let dead = self.silences > 0 && matches!(origin, Origin::Watch);
-        Some(Job {
-            read,
-            left: if dead { 0 } else { retries },
-            tried: 0,
-            origin,
-        })
+        let retries = if self.silences > 0 { 0 } else { retries };
+        Some(Job::new(Ask::Read(watch?), retries, Origin::Watch))
     }
 
     /// Notes a fault; an answer that may still come makes the device wait for `quarantine`.

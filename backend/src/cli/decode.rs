@@ -59,6 +59,10 @@ enum FramingArg {
     ModbusAscii,
     /// Modbus TCP.
     ModbusTcp,
+    /// HART.
+    Hart,
+    /// HART-IP.
+    HartIp,
 }
 
 impl FramingArg {
@@ -68,6 +72,8 @@ impl FramingArg {
             Self::ModbusRtu => Some(Framing::Rtu),
             Self::ModbusAscii => Some(Framing::Ascii),
             Self::ModbusTcp => Some(Framing::Tcp),
+            Self::Hart => Some(Framing::Hart),
+            Self::HartIp => Some(Framing::HartIp),
         }
     }
 }
@@ -240,7 +246,14 @@ impl<W: Write> Printer<W> {
             Format::Json => {
                 json::write_frame(&mut self.buffer, index, frame, context.framing, decoded)
             }
-            Format::Text => text::write_frame(&mut self.buffer, self.colour, index, frame, decoded),
+            Format::Text => text::write_frame(
+                &mut self.buffer,
+                self.colour,
+                index,
+                frame,
+                context.framing,
+                decoded,
+            ),
         };
         self.pass_on(written)
     }

@@ -1,12 +1,13 @@
 //! The command line.
 
 mod decode;
+mod dop;
 mod maps;
 mod serve;
 mod simulate;
 
 use clap::{Parser, Subcommand, ValueEnum};
-use shared::device::Device;
+use shared::device::{Device, Family};
 use std::fmt::Display;
 use std::future::Future;
 use std::io::IsTerminal;
@@ -40,6 +41,8 @@ enum Verb {
     Serve(serve::Args),
     /// Decode frames from a file, a capture or pasted text.
     Decode(decode::Args),
+    /// Decode the registers of a diagnostic object of a Limitorque MX or QX actuator.
+    Dop(dop::Args),
     /// Print the register map of a device.
     Maps(maps::Args),
     /// Be an ICON3000 actuator that other programs can read.
@@ -53,6 +56,7 @@ pub fn run(cli: Cli) -> ExitCode {
         None => serve::run(&cli.serve),
         Some(Verb::Serve(args)) => serve::run(&args),
         Some(Verb::Decode(args)) => decode::run(&args),
+        Some(Verb::Dop(args)) => dop::run(&args),
         Some(Verb::Maps(args)) => maps::run(&args),
         Some(Verb::Simulate(args)) => simulate::run(&args),
     }
@@ -65,6 +69,26 @@ enum DeviceArg {
     Icon3000,
     /// Biffi ICON3000v2.
     Icon3000v2,
+    /// Limitorque with diagnostic objects.
+    Dop,
+    /// Rotork CVA with HART.
+    RotorkCva,
+    /// Rotork IQ with HART.
+    RotorkIq,
+    /// Rotork CMA with HART.
+    RotorkCma,
+    /// Rotork CK with HART.
+    RotorkCk,
+    /// Rotork SI with HART.
+    RotorkSi,
+    /// Limitorque DDC-100: MX/DDC field unit.
+    Ddc100Mx,
+    /// Limitorque DDC-100: UEC-3-DDC field unit.
+    Ddc100Uec,
+    /// Limitorque DDC-100: clamshell field unit.
+    Ddc100Clamshell,
+    /// Limitorque DDC-100: I/O module.
+    Ddc100Io,
     /// No map: registers by address, raw numbers.
     None,
 }
@@ -74,6 +98,16 @@ impl From<DeviceArg> for Device {
         match arg {
             DeviceArg::Icon3000 => Self::Icon3000,
             DeviceArg::Icon3000v2 => Self::Icon3000v2,
+            DeviceArg::Dop => Self::Dop,
+            DeviceArg::RotorkCva => Self::Rotork(Family::Cva),
+            DeviceArg::RotorkIq => Self::Rotork(Family::Iq),
+            DeviceArg::RotorkCma => Self::Rotork(Family::Cma),
+            DeviceArg::RotorkCk => Self::Rotork(Family::Ck),
+            DeviceArg::RotorkSi => Self::Rotork(Family::Si),
+            DeviceArg::Ddc100Mx => Self::Ddc100Mx,
+            DeviceArg::Ddc100Uec => Self::Ddc100Uec,
+            DeviceArg::Ddc100Clamshell => Self::Ddc100Clamshell,
+            DeviceArg::Ddc100Io => Self::Ddc100Io,
             DeviceArg::None => Self::None,
         }
     }

@@ -1,4 +1,4 @@
-//! `valvescope simulate`: an ICON3000 for other programs.
+//! `valvescope simulate`: an actuator for other programs.
 
 use super::serve::{bind, say};
 use super::{DeviceArg, address, asked_to_end, block_on, log_to_stderr, refuse};
@@ -8,6 +8,7 @@ use crate::config::{DeviceConfig, Mode, Parity};
 use crate::serial;
 use crate::sim::{self, Actuators, Pace};
 use clap::ValueEnum;
+use shared::sim::DopSetup;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -46,6 +47,77 @@ pub(super) struct Args {
     /// The tag that it reports. Tags that begin with FV or PV are control valves.
     #[arg(long, default_value = "XV-101")]
     tag: String,
+    #[command(flatten)]
+    dop: DopArgs,
+}
+
+/// How a DOP device behaves.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "With --device dop")]
+struct DopArgs {
+    /// Lowest of the three status bits: 11, 12 or 13.
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u8).range(11..=13))]
+    shift: u8,
+    /// How long it is busy with a request, in milliseconds.
+    #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(0..=60_000))]
+    busy_ms: u32,
+    /// Another master asks for an object so often, in milliseconds; 0 for never.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=3_600_000))]
+    foreign_ms: u32,
+    /// Records in its event log at the start.
+    #[arg(long, default_value_t = 420, value_parser = clap::value_parser!(u16).range(0..=4096))]
+    events: u16,
+    /// It does not stroke by itself.
+    #[arg(long)]
+    still: bool,
+    /// Addresses of its request, indicator, status, count and response registers.
+    #[arg(
+        long,
+        value_name = "REQUEST,INDICATORS,STATUS,COUNT,RESPONSE",
+        default_value = "4000,4010,4014,4015,4100",
+        value_parser = registers
+    )]
+    registers: [u16; 5],
+}
+
+impl DopArgs {
+    fn setup(&self) -> DopSetup {
+        let [request, indicators, status, count, response] = self.registers;
+        DopSetup {
+            request,
+            indicators,
+            status,
+            count,
+            response,
+            shift: self.shift,
+            busy_ms: self.busy_ms,
+            foreign_ms: self.foreign_ms,
+            events: self.events.into(),
+            moves: !self.still,
+        }
+    }
+}
+
+/// Five addresses that leave room for what stands there.
+fn registers(text: &str) -> Result<[u16; 5], String> {
+    let numbers: Result<Vec<u16>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    let five = numbers.ok().and_then(|n| <[u16; 5]>::try_from(n).ok());
+    let Some(five) = five else {
+        return Err("write five addresses from 0 to 65535 with commas between them".into());
+    };
+    let ranges = five.iter().zip([1, 4, 1, 1, 512]);
+    let ranges: Vec<(u32, u32)> = ranges
+        .map(|(start, len)| (u32::from(*start), u32::from(*start) + len))
+        .collect();
+    let apart = ranges.iter().enumerate().all(|(at, one)| {
+        let others = ranges.iter().skip(at + 1);
+        one.1 <= 65_536 && others.into_iter().all(|o| o.1 <= one.0 || one.1 <= o.0)
+    });
+    if apart {
+        Ok(five)
+    } else {
+        Err("the areas overlap (they have 1, 4, 1, 1 and 512 registers)".into())
+    }
 }
 
 /// Parities.
@@ -79,7 +151,7 @@ impl ParityArg {
 pub(super) fn run(args: &Args) -> ExitCode {
     log_to_stderr();
     if args.device == DeviceArg::None {
-        return refuse("it must be some device; choose icon3000v2 or icon3000");
+        return refuse("it must be some device; choose icon3000v2, icon3000 or dop");
     }
     block_on(simulate(args))
 }
@@ -91,8 +163,9 @@ async fn simulate(args: &Args) -> ExitCode {
         bus: 0,
         unit: args.unit,
         description: String::new(),
+        profile: None,
     };
-    let actuators = Actuators::new([&device], Clock::start());
+    let actuators = Actuators::with([&device], Clock::start(), args.dop.setup());
     if let Some(address) = args.listen {
         return tcp(address, actuators).await;
     }
@@ -153,5 +226,33 @@ where
             Err(error) => refuse(format_args!("the line is lost: {error}")),
         },
         () = asked_to_end() => ExitCode::SUCCESS,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn registers_have_room() {
+        assert_eq!(
+            registers("4000,4010,4014,4015,4100"),
+            Ok([4000, 4010, 4014, 4015, 4100])
+        );
+        assert!(registers("0, 1, 5, 6, 7").is_ok());
+        assert!(registers("1,2,6,7,65024").is_ok());
+        for bad in [
+            "",
+            "1,2,6,7",
+            "1,2,6,7,8,9",
+            "1,2,6,7,x",
+            "1,2,5,7,8",
+            "500,2,6,7,8",
+            "1,2,6,7,65025",
+            "1,2,6,7,70000",
+            "1,1,6,7,8",
+        ] {
+            assert!(registers(bad).is_err(), "{bad}");
+        }
     }
 }

@@ -1,9 +1,11 @@
 //! From what is written to what is meant.
 
-use super::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, raw};
+use super::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, profile, raw};
 use shared::device::Device;
 use shared::frame::Framing;
 use std::ops::RangeInclusive;
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 use toml::Spanned;
 
@@ -34,8 +36,8 @@ fn wrong<T, V>(value: &Spanned<V>, text: impl Into<String>) -> Result<T, Wrong> 
     })
 }
 
-/// Checks a whole file.
-pub(super) fn check(file: raw::File) -> Result<Config, Wrong> {
+/// Checks a whole file; `beside` is the directory in which it lies.
+pub(super) fn check(file: raw::File, beside: &Path) -> Result<Config, Wrong> {
     let listen = match &file.server.listen {
         None => LISTEN,
         Some(text) => match text.get_ref().parse() {
@@ -63,7 +65,7 @@ pub(super) fn check(file: raw::File) -> Result<Config, Wrong> {
         config.buses.push(bus);
     }
     for device in file.device {
-        let device = self::device(device.into_inner(), &config)?;
+        let device = self::device(device.into_inner(), &config, beside)?;
         config.devices.push(device);
     }
     Ok(config)
@@ -221,7 +223,7 @@ fn host(bus: &Spanned<raw::Bus>, usual: u16) -> Result<String, Wrong> {
     }
 }
 
-fn device(raw: raw::Device, config: &Config) -> Result<DeviceConfig, Wrong> {
+fn device(raw: raw::Device, config: &Config, beside: &Path) -> Result<DeviceConfig, Wrong> {
     let tag = raw.tag.get_ref();
     if tag.trim().is_empty() {
         return wrong(&raw.tag, "`tag` is empty; give the device a tag");
@@ -230,7 +232,8 @@ fn device(raw: raw::Device, config: &Config) -> Result<DeviceConfig, Wrong> {
         let text = format!("there is a device \"{tag}\" already; tags must differ");
         return wrong(&raw.tag, text);
     }
-    let Some(device) = Device::from_key(raw.kind.get_ref()) else {
+    let known = Device::from_key(raw.kind.get_ref()).filter(|d| Device::ALL.contains(d));
+    let Some(device) = known else {
         let list = Device::ALL.map(|d| format!("\"{}\"", d.key())).join(", ");
         let text = format!("`kind` is \"{}\"; write one of {list}", raw.kind.get_ref());
         return wrong(&raw.kind, text);
@@ -250,13 +253,16 @@ fn device(raw: raw::Device, config: &Config) -> Result<DeviceConfig, Wrong> {
         return wrong(&raw.bus, text);
     };
     let unit = match u8::try_from(*raw.unit.get_ref()) {
-        Ok(unit @ 1..=247) => unit,
+        Ok(unit) if (1..=device.last_unit()).contains(&unit) => unit,
         Ok(0) => {
-            let text = "`unit` is 0, which speaks to all devices at once; write 1 to 247";
+            let last = device.last_unit();
+            let text =
+                format!("`unit` is 0, which speaks to all devices at once; write 1 to {last}");
             return wrong(&raw.unit, text);
         }
         _ => {
-            let text = format!("`unit` is {}; write 1 to 247", raw.unit.get_ref());
+            let (unit, last) = (raw.unit.get_ref(), device.last_unit());
+            let text = format!("`unit` is {unit}; write 1 to {last}");
             return wrong(&raw.unit, text);
         }
     };
@@ -275,15 +281,28 @@ fn device(raw: raw::Device, config: &Config) -> Result<DeviceConfig, Wrong> {
         .buses
         .get(bus)
         .is_some_and(|b| b.line == LineConfig::Simulator);
-    if simulated && !device.is_icon() {
-        let text = "the simulator can be an \"icon3000v2\" or an \"icon3000\" only";
+    if simulated && device == Device::None {
+        let text = "the simulator can be an \"icon3000v2\", an \"icon3000\" or a \"dop\" only";
         return wrong(&raw.kind, text);
     }
+    let profile = match &raw.profile {
+        Some(path) if !device.is_dop() => {
+            let kind = device.key();
+            let text = format!("a device of kind \"{kind}\" has no `profile`; remove the line");
+            return wrong(path, text);
+        }
+        Some(path) => Some(Arc::new(profile::read(path, beside)?)),
+        None if device.is_dop() && simulated => Some(crate::sim::dop_profile()),
+        // Nothing can be read then, and the page says what is missing.
+        None if device.is_dop() => Some(Arc::default()),
+        None => None,
+    };
     Ok(DeviceConfig {
         tag: tag.clone(),
         device,
         bus,
         unit,
         description: raw.description.map(Spanned::into_inner).unwrap_or_default(),
+        profile,
     })
 }

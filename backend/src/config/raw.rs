@@ -47,5 +47,6 @@ pub(super) struct Device {
     pub kind: Spanned<String>,
     pub bus: Spanned<String>,
     pub unit: Spanned<i64>,
+    pub profile: Option<Spanned<String>>,
     pub description: Option<Spanned<String>>,
 }

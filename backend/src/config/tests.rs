@@ -19,7 +19,7 @@ fn the_example_is_valid() {
     let config = parse(EXAMPLE).unwrap();
     assert!(config.buses.len() >= 5 && config.devices.len() >= 5);
     let kinds: Vec<_> = config.buses.iter().map(|b| b.line.framing()).collect();
-    for framing in Framing::ALL {
+    for framing in Framing::MODBUS {
         assert!(kinds.contains(&framing));
     }
 }
@@ -100,6 +100,11 @@ fn refusals_name_the_line_and_what_to_do() {
         &["248", "1 to 247"],
     );
     check(
+        device("kind = \"ddc100-mx\"\nbus = \"a\"\nunit = 251"),
+        9,
+        &["251", "1 to 250"],
+    );
+    check(
         device("kind = \"none\"\nbus = \"a\"\nunit = \"1\""),
         9,
         &["`unit`", "whole number"],
@@ -130,6 +135,75 @@ fn refusals_name_the_line_and_what_to_do() {
         parse("[[bus]]\nname = \"a\"\n\nname = \"b\""),
         4,
         &["duplicate"],
+    );
+}
+
+/// A directory with a profile in it; the configuration names it.
+fn with_profile(name: &str, text: &str, device: &str) -> Result<Config, String> {
+    let directory =
+        std::env::temp_dir().join(format!("valvescope-config-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&directory).unwrap();
+    std::fs::write(directory.join("site.json"), text).unwrap();
+    let toml = format!("[[bus]]\nname = \"a\"\n{RTU}\n[[device]]\ntag = \"x\"\n{device}\n");
+    let config = Config::parse(&directory.join("plant.toml"), &toml);
+    std::fs::remove_dir_all(&directory).unwrap();
+    config.map_err(|e| e.to_string())
+}
+
+const DOP: &str = "kind = \"dop\"\nbus = \"a\"\nunit = 1";
+
+#[test]
+fn a_dop_device_has_the_profile_of_its_site() {
+    let named = format!("{DOP}\nprofile = \"site.json\"");
+    let config = with_profile("good", r#"{"registers":{"request":17}}"#, &named).unwrap();
+    let profile = config.devices[0].profile.as_ref().unwrap();
+    assert_eq!(profile.registers.request, Some(17));
+    assert_eq!(config.devices[0].device, Device::Dop);
+    // None is named: nothing is known of the site.
+    let config = with(RTU, DOP).unwrap();
+    assert_eq!(
+        config.devices[0].profile.as_deref(),
+        Some(&Profile::default())
+    );
+    // On the simulator the addresses are its own.
+    let config = with("kind = \"simulator\"", DOP).unwrap();
+    let profile = config.devices[0].profile.as_ref().unwrap();
+    assert_eq!(profile.registers.request, Some(4000));
+    assert_eq!(with(RTU, ICON).unwrap().devices[0].profile, None);
+}
+
+#[test]
+fn mistakes_in_a_profile_name_file_line_and_key() {
+    let check = |result: Result<Config, String>, words: &[&str]| {
+        let text = result.unwrap_err();
+        assert!(text.contains("plant.toml, line 10: "), "{text}");
+        for word in words {
+            assert!(text.contains(word), "{text} lacks {word}");
+        }
+    };
+    let named = format!("{DOP}\nprofile = \"site.json\"");
+    let wrong = "{\n\"registers\": {\n\"requst\": 1\n}\n}";
+    check(
+        with_profile("key", wrong, &named),
+        &["site.json", "line 3", "registers.requst"],
+    );
+    check(
+        with_profile("json", "{\n", &named),
+        &["site.json", "line 2"],
+    );
+    check(
+        with_profile("table", r#"{"table":"coil"}"#, &named),
+        &["line 1", "table"],
+    );
+    let other = format!("{DOP}\nprofile = \"none.json\"");
+    check(
+        with_profile("gone", "{}", &other),
+        &["none.json", "can't read"],
+    );
+    let icon = format!("{ICON}\nprofile = \"site.json\"");
+    check(
+        with_profile("icon", "{}", &icon),
+        &["icon3000", "no `profile`", "remove"],
     );
 }
 

@@ -3,8 +3,10 @@
 //! A page has no queue here. It remembers how far it has come in the ring of each bus and on the
 //! board; when it can take more, it gets what followed. A page that takes nothing is let go.
 
+mod dop;
+
 use crate::bus::recorder::{Recorder, encode};
-use crate::bus::{ClientId, Command};
+use crate::bus::{ClientId, Command, Outlet};
 use crate::plant::Plant;
 use axum::extract::ws::{Message, Utf8Bytes};
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
@@ -63,10 +65,12 @@ where
 {
     let mut activity = plant.activity();
     let (done, mut finished) = mpsc::channel(MAX_READS);
+    let (dop_news, mut objects) = mpsc::channel(Outlet::SIZE);
     let mut page = Page {
         plant,
         client,
         done,
+        dop_news: Outlet::new(dop_news),
         reads: 0,
         subscriptions: Vec::new(),
         seen: 0,
@@ -85,6 +89,7 @@ where
                 incoming = socket.next() => Event::Heard(incoming.and_then(Result::ok)),
                 // The sender is part of the page: there always is one.
                 message = finished.recv() => Event::Done(message),
+                text = objects.recv() => Event::Objects(text),
                 changed = activity.changed() => Event::News(changed.is_ok()),
                 _ = tick.tick() => Event::Tick,
             }
@@ -109,6 +114,7 @@ where
                 page.reads = page.reads.saturating_sub(1);
                 messages.extend(message.as_ref().map(encode));
             }
+            Some(Event::Objects(text)) => messages.extend(text),
             Some(Event::Tick) => {
                 let now_us = plant.clock().now().get();
                 messages.push(encode(&ToPage::Tick { now_us }));
@@ -133,6 +139,8 @@ enum Event {
     Heard(Option<Message>),
     /// A read is over.
     Done(Option<ToPage>),
+    /// News about diagnostic objects.
+    Objects(Option<Utf8Bytes>),
     /// There is something new; false: there never will be.
     News(bool),
     /// The clock is due.
@@ -195,6 +203,8 @@ struct Page<'a> {
     plant: &'a Plant,
     client: ClientId,
     done: mpsc::Sender<ToPage>,
+    /// Takes the news about diagnostic objects.
+    dop_news: Outlet,
     /// Reads under way.
     reads: usize,
     subscriptions: Vec<Subscription>,
@@ -262,6 +272,7 @@ impl Page<'_> {
                 blocks,
                 period_ms,
             } => self.watch(&device, &blocks, period_ms).await,
+            ToBackend::Dop(ask) => self.dop(ask).await,
         }
     }
 

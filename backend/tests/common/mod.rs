@@ -7,7 +7,8 @@ use backend::listen::Limited;
 use backend::plant::Plant;
 use backend::ws::Hosts;
 use futures_util::{SinkExt, StreamExt};
-use shared::proto::{ToBackend, ToPage, VERSION};
+use shared::proto::{DopNews, ToBackend, ToPage, VERSION};
+use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -47,6 +48,8 @@ pub async fn get(address: SocketAddr, path: &str, headers: &str) -> (String, Vec
 /// A page.
 pub struct Page {
     socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
+    /// News about diagnostic objects that nobody has looked at yet.
+    news: VecDeque<DopNews>,
 }
 
 impl Page {
@@ -60,7 +63,10 @@ impl Page {
             request.headers_mut().insert(*name, value.parse().unwrap());
         }
         let (socket, _) = connect_async(request).await?;
-        Ok(Self { socket })
+        Ok(Self {
+            socket,
+            news: VecDeque::new(),
+        })
     }
 
     /// Connects as a browser does, and says hello.
@@ -88,7 +94,10 @@ impl Page {
         loop {
             let next = timeout(WAIT, self.socket.next()).await.expect("a message");
             match next {
-                Some(Ok(Message::Text(text))) => return Some(serde_json::from_str(&text).unwrap()),
+                Some(Ok(Message::Text(text))) => match DopNews::from_text(&text) {
+                    Some(news) => self.news.push_back(news),
+                    None => return Some(serde_json::from_str(&text).unwrap()),
+                },
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return None,
                 Some(Ok(_)) => {}
             }
@@ -106,5 +115,18 @@ impl Page {
             }
         };
         timeout(WAIT, search).await.expect("what is looked for")
+    }
+
+    /// The next news about diagnostic objects.
+    pub async fn news(&mut self) -> DopNews {
+        loop {
+            if let Some(news) = self.news.pop_front() {
+                return news;
+            }
+            let next = timeout(WAIT, self.socket.next()).await.expect("news");
+            if let Some(Ok(Message::Text(text))) = next {
+                self.news.extend(DopNews::from_text(&text));
+            }
+        }
     }
 }

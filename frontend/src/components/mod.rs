@@ -9,6 +9,7 @@ pub mod icon;
 pub mod input;
 pub mod ne107;
 pub mod problems;
+pub mod program;
 pub mod rail;
 pub mod traffic;
 pub mod values;

@@ -28,6 +28,7 @@ pub fn Rail(
 
 /// The links, the one to the present screen marked.
 fn links(html: &mut Markup, now: &Screen) {
+    let is_decode = matches!(now, Screen::Decode | Screen::Dop(_));
     let is_device = matches!(now, Screen::Devices | Screen::Device(..));
     let is_traffic = matches!(now, Screen::Traffic(_));
     let links = [
@@ -36,7 +37,7 @@ fn links(html: &mut Markup, now: &Screen) {
             "Decode",
             "nav-decode",
             Glyph::Decode,
-            *now == Screen::Decode,
+            is_decode,
         ),
         (
             Screen::Devices,
@@ -82,10 +83,7 @@ mod tests {
     #[test]
     fn the_present_screen_is_marked() {
         let mut html = Markup::new();
-        links(
-            &mut html,
-            &Screen::Device("X".into(), crate::state::route::Tab::Values),
-        );
+        links(&mut html, &Screen::Device("X".into(), "values".into()));
         let html = html.finish();
         assert_eq!(html.matches("aria-current").count(), 1);
         assert!(html.contains("data-testid=\"nav-devices\" aria-current"));

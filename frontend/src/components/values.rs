@@ -4,13 +4,15 @@ use core::ops::Range;
 use std::sync::Arc;
 
 use leptos::prelude::*;
+use leptos::task::spawn_local;
 use shared::address::Table;
+use shared::image::Image;
 use shared::map::row::{DeviceMap, Kind, Row};
 use shared::map::search::groups;
 use shared::proto::{Block, Outcome};
 use shared::tree::Name;
 
-use crate::browser::{Narrow, focus};
+use crate::browser::{Narrow, copy, focus};
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::windowed::{DrawRow, Windowed};
 use crate::erased::{effect, memo};
@@ -19,20 +21,25 @@ use crate::live::Live;
 use crate::live::store::{PERIOD_MS, Polled};
 use crate::markup::Markup;
 use crate::markup::toolbar;
-use crate::markup::values::{Around, detail, head, row as draw_row};
+use crate::markup::values::{Around, detail, head, nothing, row as draw_row};
 use crate::router::Router;
 use crate::state::job::blocks;
+use crate::state::order::Order;
 use crate::state::overview::watched;
 use crate::state::plant::DeviceState;
 use crate::state::shortcuts::Action;
 use crate::state::tree::Facts;
 use crate::state::values::{
-    Item, Opened, RawForm, as_answer, cell, filter, has_bits, items, place, toggle,
+    Item, Opened, RawForm, as_answer, as_text, cell, filter, has_bits, items, place, toggle,
 };
 use crate::state::window::moved;
+use crate::task::sleep;
 
 /// Most blocks that are polled at once; more would not be over within a period.
 const MOST: usize = 8;
+
+/// Which line something is about, see [`Item::place`].
+type Place = (Table, u16, Option<u16>);
 
 /// Everything that the parts of the register browser share.
 #[derive(Clone, Copy)]
@@ -45,6 +52,8 @@ struct Browser {
     cursor: RwSignal<Option<usize>>,
     in_view: RwSignal<Range<usize>>,
     polling: RwSignal<bool>,
+    /// Whether a row was just copied, in words.
+    copied: RwSignal<&'static str>,
     items: Memo<Arc<Vec<Item>>>,
 }
 
@@ -110,8 +119,61 @@ impl Browser {
                         .unwrap_or_default(),
                 )
             });
-            detail(html, self.map, item, cell.as_ref(), &parts);
+            let copied = self.copied.get();
+            detail(html, self.map, item, cell.as_ref(), &parts, copied);
         }
+    }
+
+    fn order(self) -> Order {
+        Order::parse(self.router.route().get("sort").unwrap_or_default())
+    }
+
+    fn draw_nothing(self, html: &mut Markup) {
+        if self.items.with(|items| items.is_empty()) {
+            let route = self.router.route();
+            let query = route.get("q").unwrap_or_default();
+            nothing(html, query, route.get("reserved").is_none());
+        }
+    }
+
+    /// Copies the selected line, and says for a while whether it worked.
+    fn copy(self) {
+        let text = untrack(|| {
+            let item = self.selected()?;
+            let cell = self.with(|d| cell(item, &d?.image));
+            Some(as_text(item, cell.as_ref()))
+        });
+        let Some(text) = text else { return };
+        spawn_local(async move {
+            let words = if copy(text).await {
+                "Copied"
+            } else {
+                "No clipboard"
+            };
+            // The screen may be gone by now.
+            let _gone = self.copied.try_set(words);
+            sleep(1500).await;
+            let _gone = self.copied.try_set("");
+        });
+    }
+
+    /// The cursor stays on its line when lines come, go or change places.
+    fn keep_cursor(self) {
+        let line: StoredValue<Option<Place>> = StoredValue::new(None);
+        effect(move || {
+            let at = self.items.with(|items| {
+                let line = line.get_value()?;
+                items.iter().position(|item| item.place() == line)
+            });
+            if self.cursor.get_untracked() != at && line.with_value(Option::is_some) {
+                self.cursor.set(at);
+            }
+        });
+        effect(move || {
+            let at = self.cursor.get();
+            let item = at.and_then(|at| self.items.with_untracked(|i| i.get(at).copied()));
+            line.set_value(item.map(Item::place));
+        });
     }
 
     /// Polled are the rows in view, in as many blocks as fit a period.
@@ -146,6 +208,17 @@ impl Browser {
                 let next = untrack(|| self.raw()).next();
                 self.router.set("raw", next.key());
             }
+            "copy-row" => self.copy(),
+            "sort" => {
+                let column = act.element.get_attribute("data-column").unwrap_or_default();
+                let next = untrack(|| self.order()).after(&column);
+                self.router.set("sort", &next);
+            }
+            "widen" => {
+                for setting in ["q", "table", "group", "access", "level"] {
+                    self.router.set(setting, "");
+                }
+            }
             // What narrows the list stands in the address.
             setting => self.router.set(setting, &act.value),
         }
@@ -160,24 +233,37 @@ pub fn ValuesView(
     /// Its map.
     map: &'static DeviceMap,
 ) -> impl IntoView {
-    let router = Router::get();
+    let (live, router) = (Live::get(), Router::get());
     let Narrow(narrow) = expect_context();
     let opened = RwSignal::new(Opened::new());
+    let tag = StoredValue::new(tag);
     let all = Browser {
-        live: Live::get(),
+        live,
         router,
         map,
-        tag: StoredValue::new(tag),
+        tag,
         opened,
         cursor: RwSignal::new(None),
         in_view: RwSignal::new(0..0),
         polling: RwSignal::new(false),
+        copied: RwSignal::new(""),
         items: memo(move || {
             let route = router.route();
             let filter = filter(|key| route.get(key).map(str::to_owned));
-            opened.with(|opened| Arc::new(items(map, &filter, opened)))
+            let order = Order::parse(route.get("sort").unwrap_or_default());
+            if order.is_live() {
+                // Twice a second; not with each value, which nobody could follow.
+                live.now.track();
+            }
+            let none = Image::new();
+            live.plant.with_untracked(|plant| {
+                let device = tag.with_value(|t| plant.device(t));
+                let image = device.map_or(&none, |d| &d.image);
+                opened.with(|opened| Arc::new(items(map, &filter, opened, order, image)))
+            })
         }),
     };
+    all.keep_cursor();
     effect(move || all.poll());
     on_cleanup(move || {
         let _gone = all.live.polled.try_set(Polled::default());
@@ -215,14 +301,18 @@ pub fn ValuesView(
             toolbar::reading(html, found, selected, polling, job);
         });
     });
-    let heads: Draw = Arc::new(move |html: &mut Markup| head(html, all.raw()));
+    let heads: Draw = Arc::new(move |html: &mut Markup| head(html, all.raw(), all.order()));
+    let empty: Draw = Arc::new(move |html: &mut Markup| all.draw_nothing(html));
     let facts: Draw = Arc::new(move |html: &mut Markup| all.draw_detail(html));
     let on_act = Callback::new(move |act: Act| all.act(&act));
     view! {
         <div class="values" class:with-detail=move || all.cursor.get().is_some()>
             <Drawn class="toolbar filters" role="search" draw=filters on_act=on_act/>
             <Drawn class="toolbar" draw=buttons on_act=on_act/>
-            <Drawn class="value-row value-head" draw=heads on_act=on_act/>
+            <div role="table" aria-label="Columns">
+                <Drawn class="value-row value-head" role="row" draw=heads on_act=on_act/>
+            </div>
+            <Drawn class="nothing" role="status" draw=empty on_act=on_act/>
             <Windowed
                 label="Registers"
                 count=Signal::derive(move || all.items.with(|i| i.len()))
@@ -264,7 +354,7 @@ fn holds(block: &Block, row: &Row) -> bool {
 }
 
 /// The parts of a value that has parts.
-fn parts(item: Item, image: &shared::image::Image) -> Option<Vec<Facts>> {
+fn parts(item: Item, image: &Image) -> Option<Vec<Facts>> {
     if item.row().kind != Kind::Curve {
         return None;
     }

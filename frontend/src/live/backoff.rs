@@ -1,5 +1,7 @@
 //! When to try again.
 
+use crate::format::within;
+
 /// Longest wait, in milliseconds: a backend that is back is found within five seconds.
 const LONGEST: u32 = 4500;
 
@@ -13,7 +15,7 @@ pub fn wait_ms(attempt: u32, random: f64) -> u32 {
         clippy::cast_sign_loss,
         reason = "a random part of a positive number below 2^32"
     )]
-    let jitter = (f64::from(base / 2) * random.clamp(0.0, 1.0)) as u32;
+    let jitter = (f64::from(base / 2) * within(random, 0.0, 1.0)) as u32;
     base / 2 + jitter
 }
 

@@ -1,8 +1,10 @@
 //! One WebSocket, with its handlers kept alive as long as it is.
 
-use shared::proto::{ToBackend, ToPage};
+use shared::proto::ToBackend;
 use wasm_bindgen::prelude::*;
 use web_sys::{MessageEvent, WebSocket};
+
+use crate::state::wire;
 
 /// What a socket tells.
 #[derive(Debug)]
@@ -10,9 +12,7 @@ pub enum Event {
     /// It is open.
     Open,
     /// A message came.
-    Message(Box<ToPage>),
-    /// Something came that is no message of the protocol.
-    Nonsense(String),
+    Text(String),
     /// It is closed; nothing more comes.
     Closed,
 }
@@ -41,11 +41,7 @@ impl Socket {
             let on = on.clone();
             Closure::<dyn Fn(JsValue)>::new(move |event: JsValue| {
                 let data = event.unchecked_ref::<MessageEvent>().data().as_string();
-                let text = data.unwrap_or_default();
-                on(match serde_json::from_str(&text) {
-                    Ok(message) => Event::Message(Box::new(message)),
-                    Err(error) => Event::Nonsense(error.to_string()),
-                });
+                on(Event::Text(data.unwrap_or_default()));
             })
         };
         let closed = Closure::<dyn Fn(JsValue)>::new(move |_| on(Event::Closed));
@@ -61,9 +57,14 @@ impl Socket {
 
     /// Sends a message. One that can't be sent is lost with the connection, which is then closed.
     pub fn send(&self, message: &ToBackend) {
-        if let Ok(text) = serde_json::to_string(message) {
-            let _lost = self.socket.send_with_str(&text);
+        if let Some(text) = wire::write(message) {
+            self.send_text(&text);
         }
+    }
+
+    /// Sends a message that is text already.
+    pub fn send_text(&self, text: &str) {
+        let _lost = self.socket.send_with_str(text);
     }
 }
 

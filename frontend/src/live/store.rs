@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use leptos::prelude::*;
-use shared::proto::{Block, ToBackend};
+use shared::proto::{Block, DOP_PREFIX, ToBackend, ToPage};
 
 use super::backoff::wait_ms;
 use super::socket::{Event, Socket};
@@ -14,6 +14,7 @@ use crate::router::Router;
 use crate::state::overview;
 use crate::state::plant::Plant;
 use crate::state::route::Screen;
+use crate::state::wire;
 use crate::task::now_ms;
 
 /// Period of watches, in milliseconds.
@@ -52,11 +53,18 @@ pub struct Polled {
     pub blocks: Vec<Block>,
 }
 
-#[derive(Debug, Default)]
+/// Hears the messages for a program that the page hosts.
+type Ear = Rc<dyn Fn(&str)>;
+
+#[derive(Default)]
 struct Inner {
     socket: Option<Socket>,
     attempt: u32,
     heard: f64,
+    /// The last `hello` as it came.
+    hello: String,
+    /// The program that the page hosts.
+    ear: Option<Ear>,
 }
 
 /// The live side of the page.
@@ -157,28 +165,62 @@ impl Live {
         let _gone = self.inner.try_update_value(|inner| inner.heard = now_ms());
         match event {
             Event::Open => self.send(&[Plant::hello()]),
-            Event::Message(message) => {
-                let is_hello = matches!(*message, shared::proto::ToPage::Hello { .. });
-                let mut answer = Vec::new();
-                self.plant
-                    .update_untracked(|plant| answer = plant.take(*message, now_ms()));
-                self.send(&answer);
-                if is_hello {
-                    let _gone = self.inner.try_update_value(|inner| inner.attempt = 0);
-                    self.conn.set(Conn::Connected);
-                    self.plant.notify();
-                    self.tick();
-                } else {
-                    self.notify_soon();
+            Event::Text(text) if text.starts_with(DOP_PREFIX) => self.pass_on(&text),
+            Event::Text(text) => match wire::read(&text) {
+                Ok(message) => self.take(message, text),
+                Err(error) => {
+                    let words = format!("A message of the backend was not understood: {error}");
+                    self.plant.update(|plant| plant.refused = Some(words));
                 }
-            }
-            Event::Nonsense(error) => {
-                let words = format!("A message of the backend was not understood: {error}");
-                self.plant.update(|plant| plant.refused = Some(words));
-            }
+            },
             // Called from the socket's own handler, which must not be dropped under it.
             Event::Closed => set_timeout(move || self.retry(), Duration::ZERO),
         }
+    }
+
+    fn take(self, message: ToPage, text: String) {
+        let is_hello = matches!(message, ToPage::Hello { .. });
+        let mut answer = Vec::new();
+        self.plant
+            .update_untracked(|plant| answer = plant.take(message, now_ms()));
+        self.send(&answer);
+        if !is_hello {
+            self.notify_soon();
+            return;
+        }
+        let _gone = self.inner.try_update_value(|inner| {
+            inner.attempt = 0;
+            inner.hello.clone_from(&text);
+        });
+        self.conn.set(Conn::Connected);
+        self.plant.notify();
+        self.tick();
+        self.pass_on(&text);
+    }
+
+    /// Tells the program that the page hosts.
+    fn pass_on(self, text: &str) {
+        let ear = self.inner.try_with_value(|inner| inner.ear.clone());
+        if let Some(Some(ear)) = ear {
+            ear(text);
+        }
+    }
+
+    /// Calls `ear` with the last `hello`, and from now on with each message that is for the program
+    /// that the page hosts.
+    pub fn listen(self, ear: impl Fn(&str) + 'static) {
+        let hello = self.inner.try_update_value(|inner| {
+            inner.ear = Some(Rc::new(ear));
+            inner.hello.clone()
+        });
+        if let Some(hello) = hello.filter(|hello| !hello.is_empty()) {
+            self.pass_on(&hello);
+        }
+    }
+
+    /// Ends [`listen`](Self::listen).
+    pub fn deafen(self) {
+        let _gone = self.inner.try_update_value(|inner| inner.ear = None);
     }
 
     /// Redraws once for all messages that come before the next frame of the screen.
@@ -214,6 +256,15 @@ impl Live {
         let _gone = self.inner.try_with_value(|inner| {
             if let Some(socket) = &inner.socket {
                 messages.iter().for_each(|m| socket.send(m));
+            }
+        });
+    }
+
+    /// Sends the message of a program that the page hosts, if there is a connection.
+    pub fn send_text(self, text: &str) {
+        let _gone = self.inner.try_with_value(|inner| {
+            if let Some(socket) = &inner.socket {
+                socket.send_text(text);
             }
         });
     }

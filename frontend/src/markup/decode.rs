@@ -130,6 +130,13 @@ pub fn welcome(html: &mut Markup) {
         "",
         "Paste the bytes of a bus above, or drop a capture anywhere. Everything is decoded here; nothing leaves this page.",
     );
+    html.open("p", &[])
+        .text("Registers of a Limitorque MX or QX diagnostic object instead of frames? ");
+    let link = [("href", "#/dop"), ("data-testid", "dop-link")];
+    html.open("a", &link)
+        .text("DOP objects: paste registers")
+        .close("a");
+    html.close("p");
     html.node("h2", "", "Or try one");
     html.open("ul", &[("class", "sample-list")]);
     for sample in &SAMPLES {
@@ -206,6 +213,7 @@ mod tests {
         welcome(&mut html);
         problem_head(&mut html, (2000, 1000, 3), 2000, true);
         let html = html.finish();
+        assert!(html.contains("href=\"#/dop\""));
         assert!(html.contains("data-sample=\"damaged\""));
         assert!(html.contains("the first 2\u{2009}000 are listed"));
         assert!(html.contains("3 notes"));

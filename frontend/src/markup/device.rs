@@ -6,7 +6,7 @@ use super::Markup;
 use super::valve::{bar, torque};
 use crate::components::ne107::Sign;
 use crate::format::age;
-use crate::state::health::{Health, outcome};
+use crate::state::health::{Health, health, outcome};
 use crate::state::overview::{Active, Overview};
 use crate::state::plant::DeviceState;
 use crate::state::route::{Route, Screen, Tab};
@@ -51,7 +51,7 @@ pub const fn health_sign(health: Health) -> Option<Sign> {
 
 /// A device in the list.
 pub fn row(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u64, up: bool) {
-    let health = Health::of(device.outcome, overview);
+    let health = health(device, overview);
     let silent = health == Health::Silent || !up;
     html.open(
         "div",
@@ -92,6 +92,8 @@ pub fn row(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u6
     bar(html, overview.position.as_ref());
     let state = match health {
         Health::Silent => device.outcome.map_or("", outcome),
+        // Without a map of its registers, all that is known is whether it answers.
+        _ if overview.state.is_empty() => device.outcome.map_or("not asked yet", outcome),
         _ => &overview.state,
     };
     html.node("span", "device-state", state);
@@ -180,7 +182,7 @@ pub fn is_stale(device: &DeviceState, up: bool) -> bool {
 /// The tabs of a device.
 pub fn tabs(html: &mut Markup, tag: &str, now: Tab) {
     for tab in Tab::ALL {
-        let screen = Screen::Device(tag.to_owned(), tab);
+        let screen = Screen::Device(tag.to_owned(), tab.key().to_owned());
         html.open(
             "a",
             &[

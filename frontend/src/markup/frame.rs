@@ -94,7 +94,7 @@ pub fn row(html: &mut Markup, index: u32, summary: &Summary, beside: &Beside) {
 fn pair(html: &mut Markup, kind: Role, pair: Option<u32>) {
     let glyph = match kind {
         Role::Request => Glyph::Right,
-        Role::Response | Role::Exception => Glyph::Left,
+        Role::Response | Role::Exception | Role::Burst => Glyph::Left,
         Role::Unknown | Role::Noise => {
             let mark = if kind == Role::Noise { "" } else { "?" };
             html.open("span", &[("class", "pair alone"), ("title", role(kind))]);

@@ -119,6 +119,12 @@ impl Markup {
         .close("svg")
     }
 
+    /// HTML that other markup made.
+    pub fn append(&mut self, html: &str) -> &mut Self {
+        self.0.push_str(html);
+        self
+    }
+
     fn escape(&mut self, text: &str) {
         for c in text.chars() {
             match c {

@@ -1,5 +1,8 @@
 //! Rows of the register browser, and all that is known about one.
 
+#[cfg(test)]
+mod tests;
+
 use shared::map::row::{DeviceMap, Kind, Row, Trust};
 use shared::value::Quality;
 
@@ -9,6 +12,7 @@ use super::facts::{fact, reading, trust};
 use crate::components::icon::Glyph;
 use crate::format::age;
 use crate::state::health::{Freshness, freshness};
+use crate::state::order::{Column, Order};
 use crate::state::tree::{Facts, binary};
 use crate::state::values::{Cell, Item, RawForm, access, addresses, has_bits};
 
@@ -30,20 +34,16 @@ pub struct Around {
 /// How long a change stays marked, in microseconds.
 const FADE: u64 = 600_000;
 
-/// Names of the columns.
-pub fn head(html: &mut Markup, raw: RawForm) {
-    for (class, text) in [
-        ("", ""),
-        ("num", "Address"),
-        ("num", "Number"),
-        ("", "Name"),
-        ("right", "Value"),
-        ("", "Unit"),
-        ("", "Age, quality"),
-    ] {
-        html.node("span", class, text);
-    }
-    html.open(
+/// Names of the columns; those that the list can be sorted by are buttons.
+pub fn head(html: &mut Markup, raw: RawForm, order: Order) {
+    html.node("span", "", "");
+    sortable(html, "num", Column::Address, order);
+    plain(html, "num", "Number");
+    sortable(html, "", Column::Name, order);
+    sortable(html, "right", Column::Value, order);
+    plain(html, "", "Unit");
+    sortable(html, "", Column::Age, order);
+    html.open("span", &[("role", "columnheader")]).open(
         "button",
         &[
             ("class", "quiet-button"),
@@ -52,6 +52,59 @@ pub fn head(html: &mut Markup, raw: RawForm) {
         ],
     );
     html.text("Raw, ").text(raw.key()).close("button");
+    html.close("span");
+}
+
+fn plain(html: &mut Markup, class: &str, text: &str) {
+    html.open("span", &[("class", class), ("role", "columnheader")]);
+    html.text(text).close("span");
+}
+
+fn sortable(html: &mut Markup, class: &str, column: Column, order: Order) {
+    html.open(
+        "span",
+        &[
+            ("class", &format!("{class} sortable")),
+            ("role", "columnheader"),
+            ("aria-sort", order.aria(column)),
+        ],
+    );
+    html.open(
+        "button",
+        &[
+            ("class", "quiet-button"),
+            ("data-act", "sort"),
+            ("data-column", column.key()),
+            ("data-testid", &format!("sort-{}", column.key())),
+        ],
+    );
+    html.text(column.label());
+    if order.column == column {
+        html.icon(if order.down { Glyph::Down } else { Glyph::Up });
+    }
+    html.close("button").close("span");
+}
+
+/// Why the list is empty, and what to do.
+pub fn nothing(html: &mut Markup, query: &str, hide_reserved: bool) {
+    let mut words = if query.is_empty() {
+        "No register passes these filters.".to_owned()
+    } else {
+        format!("No register matches \u{201c}{query}\u{201d} with these filters.")
+    };
+    if hide_reserved {
+        words.push_str(" Reserved addresses are left out; tick Reserved to see them.");
+    }
+    html.open("p", &[("class", "empty"), ("data-testid", "nothing")]);
+    html.text(&words).text(" ");
+    Button {
+        act: "widen",
+        testid: "widen",
+        words: "Clear search and filters",
+        ..Button::default()
+    }
+    .draw(html);
+    html.close("p");
 }
 
 /// One line of the register browser.
@@ -185,12 +238,25 @@ pub fn detail(
     item: Item,
     cell: Option<&Cell>,
     parts: &[Facts],
+    copied: &str,
 ) {
     let row = item.row();
     let (address, number) = addresses(row);
     Button {
         act: "close",
         words: "Close",
+        ..Button::default()
+    }
+    .draw(html);
+    Button {
+        act: "copy-row",
+        testid: "copy-row",
+        words: if copied.is_empty() {
+            "Copy row"
+        } else {
+            copied
+        },
+        glyph: Some(Glyph::Copy),
         ..Button::default()
     }
     .draw(html);
@@ -228,7 +294,9 @@ pub fn detail(
         fact(html, "User level", level.key());
     }
     fact(html, "Group", row.group);
-    fact(html, "Since", row.since.key());
+    if let Some(since) = row.since {
+        fact(html, "Since", since.key());
+    }
     fact(html, "Key", row.key);
     fact(
         html,
@@ -238,22 +306,12 @@ pub fn detail(
     if !row.note.is_empty() {
         fact(html, "Note", row.note);
     }
-    let mentioned = mentioned(row.note).filter_map(|id| map.reading(id));
-    for read in row.reading.into_iter().chain(mentioned) {
+    for read in row.reading.into_iter().chain(map.mentioned(row.note)) {
         reading(html, read);
     }
     html.close("dl");
     members(html, row, cell);
     decoded_parts(html, parts);
-}
-
-/// The ids of readings that a note mentions: `E41`.
-fn mentioned(note: &str) -> impl Iterator<Item = &str> {
-    note.split(|c: char| !c.is_ascii_alphanumeric())
-        .filter(|word| {
-            word.strip_prefix('E')
-                .is_some_and(|n| n.len() == 2 && n.bytes().all(|b| b.is_ascii_digit()))
-        })
 }
 
 fn raw_words(html: &mut Markup, row: &Row, cell: &Cell) {
@@ -284,12 +342,16 @@ fn members(html: &mut Markup, row: &Row, cell: Option<&Cell>) {
             if set.bits {
                 raw.wrapping_shr(code) & 1 == 1
             } else {
-                raw == code
+                member.has(raw)
             }
         });
         html.open("tr", &[("class", if is_now { "now" } else { "" })]);
         html.node("td", "num mono", &member.value.to_string());
-        html.node("td", "", member.label);
+        let label = match raw {
+            Some(raw) if is_now && !set.bits => member.name(raw),
+            _ => member.label.into(),
+        };
+        html.node("td", "", &label);
         let mark = if is_now { "now" } else { "" };
         html.node("td", "quiet", mark).close("tr");
     }
@@ -306,81 +368,4 @@ fn decoded_parts(html: &mut Markup, parts: &[Facts]) {
         fact(html, &part.label, &format!("{} {}", part.value, part.unit));
     }
     html.close("dl");
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use shared::address::Table;
-    use shared::map::row::Model;
-
-    fn cell() -> Cell {
-        Cell {
-            text: "45.2".into(),
-            unit: "%",
-            numeric: true,
-            faint: false,
-            quality: Quality::Good,
-            at: 1_000_000,
-            changed: Some(1_000_000),
-            words: vec![452],
-        }
-    }
-
-    fn position() -> Item {
-        let map = Model::Icon3000v2.map();
-        Item::Row(map.by_key(Table::Holding, "actuator_position").unwrap())
-    }
-
-    fn around(now: u64, reachable: bool) -> Around {
-        Around {
-            now,
-            period: Some(1_000_000),
-            reachable,
-            raw: RawForm::Hex,
-            open: false,
-        }
-    }
-
-    fn html(cell: Option<&Cell>, around: &Around) -> String {
-        let mut html = Markup::new();
-        row(&mut html, position(), cell, around);
-        html.finish()
-    }
-
-    #[test]
-    fn a_row_shows_both_addresses_and_its_age() {
-        let fresh = html(Some(&cell()), &around(1_250_000, true));
-        for part in ["3004", "403005", "45.2", "0.2 s", "01C4", "changed fade-2"] {
-            assert!(fresh.contains(part), "{part}: {fresh}");
-        }
-        assert!(!fresh.contains("stale"));
-        let later = html(Some(&cell()), &around(9_000_000, true));
-        assert!(later.contains("stale") && !later.contains("changed"));
-        assert!(html(Some(&cell()), &around(1_250_000, false)).contains("stale"));
-        assert!(html(None, &around(0, true)).contains("not read"));
-    }
-
-    #[test]
-    fn notes_lead_to_their_readings() {
-        let note = "Bits 0 to 15 match; see also E41, E5x and EFS.";
-        assert_eq!(mentioned(note).collect::<Vec<_>>(), ["E41"]);
-    }
-
-    #[test]
-    fn the_detail_has_all_facts() {
-        let map = Model::Icon3000v2.map();
-        let mut html = Markup::new();
-        detail(&mut html, map, position(), Some(&cell()), &[]);
-        let html = html.finish();
-        for part in [
-            "Holding register",
-            "403005",
-            "u16",
-            "0 to 1000",
-            "VCIOM-16345-EN",
-        ] {
-            assert!(html.contains(part), "{part}: {html}");
-        }
-    }
 }

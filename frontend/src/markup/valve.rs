@@ -1,6 +1,7 @@
 //! Pictures of data: the valve, its torque, its position as a bar. SVG without inline styles.
 
 use super::Markup;
+use crate::format::within;
 use crate::state::overview::{Figure, Overview, Travel};
 
 /// A thin bar; a picture of the number beside it.
@@ -14,8 +15,9 @@ pub(super) fn bar(html: &mut Markup, position: Option<&Figure>) {
             ("aria-hidden", "true"),
         ],
     );
-    rect(html, "bar-track", (0, 0, 100, 6));
+    // An empty track would look like a closed valve.
     if let Some(position) = position {
+        rect(html, "bar-track", (0, 0, 100, 6));
         rect(html, "bar-fill", (0, 0, percent(position), 6));
     }
     html.close("svg");
@@ -179,7 +181,7 @@ fn rect(html: &mut Markup, class: &str, (x, y, width, height): (i32, i32, i32, i
     reason = "clamped to what fits in a picture"
 )]
 fn percent(figure: &Figure) -> i32 {
-    figure.value.clamp(-100.0, 100.0).round() as i32
+    within(figure.value, -100.0, 100.0).round() as i32
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use shared::map::row::DeviceMap;
 
 use crate::components::conn::ConnNotice;
 use crate::components::drawn::{Draw, Drawn};
+use crate::components::program::{DIAGNOSTICS, Program};
 use crate::components::traffic::TrafficView;
 use crate::components::values::ValuesView;
 use crate::erased::{effect, memo};
@@ -35,6 +36,10 @@ pub fn DevicePage(
         live.plant
             .with(|p| tag.with_value(|t| p.device(t).map(|d| d.device)))
     });
+    let is_dop = memo(move || {
+        live.plant
+            .with(|p| tag.with_value(|t| p.device(t).is_some_and(DeviceState::is_dop)))
+    });
     effect(move || {
         if let (true, Some(kind)) = (live.conn.get().is_up(), kind.get()) {
             live.read(&tag.get_value(), read_once(kind));
@@ -54,9 +59,16 @@ pub fn DevicePage(
         if kind.with(Option::is_none) {
             html.node("p", "empty", "There is no such device here.");
         }
-        tag.with_value(|t| device::tabs(html, t, tab.get()));
+        // Programs draw their own tabs.
+        if !is_dop.get() {
+            tag.with_value(|t| device::tabs(html, t, tab.get()));
+        }
     });
     let body = move || {
+        // Its program follows the tabs by itself.
+        if is_dop.get() {
+            return dop(tag.get_value());
+        }
         match (kind.get(), tab.get()) {
         (None, _) => ().into_any(),
         (Some(kind), Tab::Values) => match kind.map() {
@@ -100,6 +112,10 @@ fn values(tag: String, map: &'static DeviceMap) -> AnyView {
     view! { <ValuesView tag=tag map=map/> }.into_any()
 }
 
+fn dop(tag: String) -> AnyView {
+    view! { <Program name=DIAGNOSTICS device=Some(tag)/> }.into_any()
+}
+
 /// The page of the device that the address names.
 #[component]
 pub fn DeviceRoute() -> impl IntoView {
@@ -109,7 +125,7 @@ pub fn DeviceRoute() -> impl IntoView {
         _ => String::new(),
     });
     let tab = Signal::derive(move || match screen.get() {
-        Screen::Device(_, tab) => tab,
+        Screen::Device(_, tab) => Tab::from_key(&tab),
         _ => Tab::Overview,
     });
     move || view! { <DevicePage tag=tag.get() tab=tab/> }

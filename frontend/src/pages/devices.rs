@@ -12,9 +12,9 @@ use crate::keys::on_action;
 use crate::live::Live;
 use crate::markup::{Markup, device};
 use crate::router::Router;
-use crate::state::health::Health;
+use crate::state::health::{Health, health};
 use crate::state::overview::Overview;
-use crate::state::route::{Route, Screen, Tab};
+use crate::state::route::{Route, Screen};
 use crate::state::shortcuts::Action;
 use crate::state::window::moved;
 
@@ -29,7 +29,7 @@ pub fn DevicesPage() -> impl IntoView {
         live.plant.with(|plant| {
             let mut order: Vec<(Health, usize)> = Vec::new();
             for (at, d) in plant.devices.iter().enumerate() {
-                let health = Health::of(d.outcome, &Overview::of(d.device, &d.image));
+                let health = health(d, &Overview::of(d.device, &d.image));
                 // The worst first, equal ones as configured.
                 let place = order.partition_point(|(other, _)| *other >= health);
                 order.insert(place, (health, at));
@@ -53,7 +53,7 @@ pub fn DevicesPage() -> impl IntoView {
                 .with_untracked(|p| Some(p.devices.get(at)?.info.tag.clone()))
         });
         if let Some(tag) = tag {
-            router.go(&Route::to(Screen::Device(tag, Tab::Overview)));
+            router.go(&Route::to(Screen::device(&tag)));
         }
     });
     on_action(move |action| {

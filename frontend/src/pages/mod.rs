@@ -3,5 +3,6 @@
 pub mod decode;
 pub mod device;
 pub mod devices;
+pub mod dop;
 pub mod settings;
 pub mod traffic;

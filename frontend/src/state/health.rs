@@ -2,7 +2,8 @@
 
 use shared::proto::Outcome;
 
-use super::overview::Overview;
+use super::overview::{Overview, watched};
+use super::plant::DeviceState;
 
 /// How a device is, the worst last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -34,6 +35,15 @@ impl Health {
         } else {
             Self::Unread
         }
+    }
+}
+
+/// How a device is. One of which nothing is read again and again is not worse for that.
+#[must_use]
+pub fn health(device: &DeviceState, overview: &Overview) -> Health {
+    match Health::of(device.outcome, overview) {
+        Health::Unread if watched(device.device).is_empty() => Health::Good,
+        other => other,
     }
 }
 

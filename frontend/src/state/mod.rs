@@ -1,12 +1,14 @@
 //! What the page knows, as plain Rust: no signals, no browser, tested natively.
 
 mod absorb;
-pub mod detect;
 pub mod findings;
 pub mod health;
 pub mod job;
+pub mod json;
 pub mod load;
+pub mod order;
 pub mod overview;
+pub mod place;
 pub mod plant;
 pub mod route;
 pub mod samples;
@@ -17,4 +19,5 @@ pub mod traffic;
 pub mod tree;
 pub mod values;
 pub mod window;
+pub mod wire;
 pub mod work;

@@ -268,9 +268,9 @@ pub fn watched(device: Device) -> Vec<Block> {
 #[must_use]
 pub fn read_once(device: Device) -> Vec<Block> {
     match device {
-        Device::None => Vec::new(),
         Device::Icon3000 => vec![holding(3034, 44)],
         Device::Icon3000v2 => vec![holding(3034, 44), holding(3480, 1), holding(3670, 2)],
+        _ => Vec::new(),
     }
 }
 

@@ -1,11 +1,13 @@
 //! What the backend has sent, decoded: buses with their frames, devices with their values.
 
+mod parts;
+#[cfg(test)]
+mod tests;
+
 use shared::capture::{Capture, Direction, Micros};
-use shared::device::Device;
-use shared::frame::Framing;
-use shared::image::Image;
-use shared::proto::{Block, Bus, DeviceInfo, LineState, Outcome, ToBackend, ToPage, VERSION, Way};
-use shared::session::Session;
+use shared::proto::{Block, Bus, DeviceInfo, Outcome, ToBackend, ToPage, VERSION, Way};
+
+pub use parts::{BusState, DeviceState};
 
 use super::absorb::{absorb, bytes_of};
 use super::job::Job;
@@ -15,58 +17,6 @@ pub const KEPT: u32 = 5000;
 
 /// Frames forgotten at once.
 const BATCH: u32 = 500;
-
-/// A bus as the page knows it.
-#[derive(Clone, Debug)]
-pub struct BusState {
-    /// Its configuration.
-    pub info: Bus,
-    /// State of its line.
-    pub line: LineState,
-    /// What happened to the line, in words.
-    pub line_text: String,
-    /// Its frames.
-    pub session: Session,
-    /// Sequence number of the last capture.
-    pub last_seq: Option<u64>,
-    /// Captures that were lost on the way to the page.
-    pub missed: u64,
-}
-
-impl BusState {
-    fn new(info: Bus) -> Self {
-        let framing = Framing::from_key(&info.framing).unwrap_or_default();
-        Self {
-            info,
-            line: LineState::Starting,
-            line_text: String::new(),
-            session: Session::new(framing),
-            last_seq: None,
-            missed: 0,
-        }
-    }
-}
-
-/// A device as the page knows it.
-#[derive(Clone, Debug)]
-pub struct DeviceState {
-    /// Its configuration.
-    pub info: DeviceInfo,
-    /// Its kind.
-    pub device: Device,
-    /// Its values.
-    pub image: Image,
-    /// How its last read ended.
-    pub outcome: Option<Outcome>,
-    /// The same in words.
-    pub text: String,
-    /// When it last answered well, in microseconds since the start of the backend.
-    pub last_ok: Option<u64>,
-    /// How long its last answer took.
-    pub latency: Option<u64>,
-    /// Reading under way or just over.
-    pub job: Option<Job>,
-}
 
 /// Everything that the backend has told.
 #[derive(Clone, Debug, Default)]
@@ -190,16 +140,7 @@ impl Plant {
             let kept = old.iter().position(|d| d.info == info);
             self.devices.push(match kept {
                 Some(at) => old.swap_remove(at),
-                None => DeviceState {
-                    device: Device::from_key(&info.kind).unwrap_or_default(),
-                    info,
-                    image: Image::new(),
-                    outcome: None,
-                    text: String::new(),
-                    last_ok: None,
-                    latency: None,
-                    job: None,
-                },
+                None => DeviceState::new(info),
             });
         }
     }
@@ -371,208 +312,4 @@ fn reads(tag: &str, job: &mut Job, next_id: &mut u32) -> Vec<ToBackend> {
             block,
         })
         .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use shared::address::{Address, Table};
-    use shared::encode::frame;
-    use shared::proto::TableName;
-    use shared::render::hex;
-
-    fn hello(run: u64) -> ToPage {
-        ToPage::Hello {
-            version: VERSION,
-            app: "test".into(),
-            run,
-            now_us: 5_000_000,
-            wall_ms: 1_000_000,
-            read_only: true,
-            buses: vec![Bus {
-                name: "a".into(),
-                line: "simulated".into(),
-                framing: "modbus-rtu".into(),
-                simulated: true,
-            }],
-            devices: vec![DeviceInfo {
-                tag: "XV-1".into(),
-                kind: "icon3000v2".into(),
-                bus: "a".into(),
-                unit: 9,
-                description: String::new(),
-            }],
-        }
-    }
-
-    fn capture(seq: u64, way: Way, pdu: &[u8]) -> ToPage {
-        ToPage::Capture {
-            bus: "a".into(),
-            seq,
-            at_us: seq * 1000,
-            way,
-            ends: true,
-            hex: hex(&frame(Framing::Rtu, 0, 9, pdu)),
-        }
-    }
-
-    fn plant() -> Plant {
-        let mut plant = Plant::default();
-        let sent = plant.take(hello(1), 0.0);
-        assert_eq!(
-            sent,
-            [ToBackend::Subscribe {
-                bus: "a".into(),
-                after: None
-            }]
-        );
-        plant
-    }
-
-    fn position(plant: &Plant) -> Option<u16> {
-        let image = &plant.device("XV-1").unwrap().image;
-        image
-            .cell(Table::Holding, Address::new(3004))
-            .map(|c| c.word)
-    }
-
-    #[test]
-    fn values_come_from_captures() {
-        let mut plant = plant();
-        plant.take(capture(1, Way::Tx, &[3, 0x0B, 0xBC, 0, 1]), 0.0);
-        assert_eq!(position(&plant), None);
-        plant.take(capture(2, Way::Rx, &[3, 2, 1, 0xC4]), 0.0);
-        assert_eq!(position(&plant), Some(452));
-        assert_eq!(plant.buses[0].session.len(), 2);
-    }
-
-    #[test]
-    fn a_reconnection_goes_on_and_a_restart_begins_anew() {
-        let mut plant = plant();
-        plant.take(capture(1, Way::Tx, &[3, 0x0B, 0xBC, 0, 1]), 0.0);
-        plant.take(capture(2, Way::Rx, &[3, 2, 1, 0xC4]), 0.0);
-        plant.lost();
-        let again = plant.take(hello(1), 0.0);
-        assert_eq!(
-            again,
-            [ToBackend::Subscribe {
-                bus: "a".into(),
-                after: Some(2)
-            }]
-        );
-        assert_eq!(position(&plant), Some(452));
-        let anew = plant.take(hello(2), 0.0);
-        assert_eq!(
-            anew,
-            [ToBackend::Subscribe {
-                bus: "a".into(),
-                after: None
-            }]
-        );
-        assert_eq!(position(&plant), None);
-    }
-
-    #[test]
-    fn holes_are_counted_and_repeats_ignored() {
-        let mut plant = plant();
-        plant.take(capture(1, Way::Tx, &[17]), 0.0);
-        plant.take(capture(1, Way::Tx, &[17]), 0.0);
-        assert_eq!(plant.buses[0].session.len(), 1);
-        plant.take(capture(5, Way::Tx, &[17]), 0.0);
-        assert_eq!(plant.buses[0].missed, 3);
-        plant.take(
-            ToPage::Lagged {
-                bus: "a".into(),
-                missed: 10,
-            },
-            0.0,
-        );
-        plant.take(capture(16, Way::Tx, &[17]), 0.0);
-        assert_eq!(plant.buses[0].missed, 13);
-    }
-
-    #[test]
-    fn frames_are_bounded() {
-        let mut plant = plant();
-        for seq in 1..=u64::from(KEPT) + 5000 {
-            plant.take(capture(seq, Way::Tx, &[17]), 0.0);
-        }
-        let session = &plant.buses[0].session;
-        let kept = session.len() - session.first();
-        assert!((KEPT..=KEPT + BATCH).contains(&kept), "{kept}");
-    }
-
-    #[test]
-    fn watches_are_sent_when_they_change() {
-        let mut plant = plant();
-        let block = Block {
-            table: TableName::Holding,
-            start: 3000,
-            count: 31,
-        };
-        let wanted = || vec![("XV-1".to_owned(), vec![block], 1000)];
-        assert_eq!(plant.watch(wanted()).len(), 1);
-        assert_eq!(plant.watch(wanted()).len(), 0);
-        let end = plant.watch(Vec::new());
-        assert!(matches!(&end[..], [ToBackend::Watch { blocks, .. }] if blocks.is_empty()));
-    }
-
-    #[test]
-    fn a_job_asks_on_until_it_is_done() {
-        let mut plant = plant();
-        let block = Block {
-            table: TableName::Coil,
-            start: 0,
-            count: 11,
-        };
-        let sent = plant.read("XV-1", vec![block; 3]);
-        assert_eq!(sent.len(), 2);
-        let ToBackend::Read { id, .. } = sent[0] else {
-            panic!("{sent:?}");
-        };
-        let done = ToPage::Done {
-            id,
-            outcome: Outcome::Ok,
-            text: String::new(),
-        };
-        assert_eq!(plant.take(done, 0.0).len(), 1);
-        assert_eq!(plant.device("XV-1").unwrap().job.as_ref().unwrap().done, 1);
-    }
-
-    #[test]
-    fn another_version_is_said() {
-        let mut plant = Plant::default();
-        let ToPage::Hello {
-            app,
-            run,
-            now_us,
-            wall_ms,
-            read_only,
-            buses,
-            devices,
-            ..
-        } = hello(1)
-        else {
-            panic!("hello");
-        };
-        let other = ToPage::Hello {
-            version: VERSION + 1,
-            app,
-            run,
-            now_us,
-            wall_ms,
-            read_only,
-            buses,
-            devices,
-        };
-        assert!(plant.take(other, 0.0).is_empty());
-        assert!(plant.mismatch.is_some());
-    }
-
-    #[test]
-    fn the_clock_goes_on_between_ticks() {
-        let plant = plant();
-        assert_eq!(plant.now(1500.0), 6_500_000);
-        assert_eq!(plant.wall_ms(5_000_000), 1_000_000);
-    }
 }

@@ -40,7 +40,9 @@ impl Tab {
         }
     }
 
-    fn from_key(key: &str) -> Self {
+    /// The tab with this [`key`](Self::key), or the first one.
+    #[must_use]
+    pub fn from_key(key: &str) -> Self {
         Self::ALL
             .into_iter()
             .find(|t| t.key() == key)
@@ -56,8 +58,11 @@ pub enum Screen {
     Decode,
     /// All devices.
     Devices,
-    /// One device, by its tag.
-    Device(String, Tab),
+    /// One device, by its tag, and the word of the open tab. Which tabs there are depends on the
+    /// device, so any word is kept.
+    Device(String, String),
+    /// Diagnostic objects, offline, and the word of the open tab.
+    Dop(String),
     /// The frames on a bus; the first one if none is named.
     Traffic(Option<String>),
     /// Settings, sources, help.
@@ -71,6 +76,14 @@ pub struct Route {
     pub screen: Screen,
     /// What is set on it, in the order of the address.
     pub query: Vec<(String, String)>,
+}
+
+impl Screen {
+    /// The first tab of a device.
+    #[must_use]
+    pub fn device(tag: &str) -> Self {
+        Self::Device(tag.to_owned(), String::new())
+    }
 }
 
 impl Route {
@@ -94,7 +107,8 @@ impl Route {
         let third = parts.next().unwrap_or_default();
         let screen = match (first.as_str(), second) {
             ("devices", _) | ("device", None) => Screen::Devices,
-            ("device", Some(tag)) => Screen::Device(tag, Tab::from_key(&third)),
+            ("device", Some(tag)) => Screen::Device(tag, third),
+            ("dop", tab) => Screen::Dop(tab.unwrap_or_default()),
             ("traffic", bus) => Screen::Traffic(bus),
             ("settings", _) => Screen::Settings,
             _ => Screen::Decode,
@@ -139,7 +153,14 @@ impl fmt::Display for Route {
         match &self.screen {
             Screen::Decode => f.write_str("#/decode")?,
             Screen::Devices => f.write_str("#/devices")?,
-            Screen::Device(tag, tab) => write!(f, "#/device/{}/{}", encode(tag), tab.key())?,
+            Screen::Device(tag, tab) => {
+                write!(f, "#/device/{}", encode(tag))?;
+                if !tab.is_empty() {
+                    write!(f, "/{}", encode(tab))?;
+                }
+            }
+            Screen::Dop(tab) if tab.is_empty() => f.write_str("#/dop")?,
+            Screen::Dop(tab) => write!(f, "#/dop/{}", encode(tab))?,
             Screen::Traffic(None) => f.write_str("#/traffic")?,
             Screen::Traffic(Some(bus)) => write!(f, "#/traffic/{}", encode(bus))?,
             Screen::Settings => f.write_str("#/settings")?,
@@ -163,6 +184,10 @@ mod tests {
             "#/devices",
             "#/device/XV-101/values?q=torque%20limit&table=holding",
             "#/device/a%2Fb/overview",
+            "#/device/MX-301/objects?object=401",
+            "#/device/MX-301",
+            "#/dop",
+            "#/dop/profile?q=1",
             "#/traffic",
             "#/traffic/bus%201",
             "#/settings",
@@ -177,10 +202,7 @@ mod tests {
             assert_eq!(Route::parse(text).screen, Screen::Decode, "{text}");
         }
         assert_eq!(Route::parse("#/device").screen, Screen::Devices);
-        assert_eq!(
-            Route::parse("#/device/X/nonsense").screen,
-            Screen::Device("X".into(), Tab::Overview)
-        );
+        assert_eq!(Tab::from_key("nonsense"), Tab::Overview);
     }
 
     #[test]

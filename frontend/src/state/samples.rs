@@ -66,7 +66,7 @@ pub const SAMPLES: [Sample; 7] = [
         title: "DDC-100 poll",
         about: "The printed example of LMAIM4019-00, section 3.2",
         content: include_bytes!("../../../static/samples/ddc100.hex"),
-        device: None,
+        device: Some(Device::Ddc100Uec),
     },
 ];
 
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(seen("modbus-ascii"), (Framing::Ascii, 9, 1, v2));
         assert_eq!(seen("modbus-tcp"), (Framing::Tcp, 8, 0, v2));
         assert_eq!(seen("array"), (Framing::Rtu, 4, 0, v2));
-        assert_eq!(seen("ddc100"), (Framing::Rtu, 2, 0, Device::None));
+        assert_eq!(seen("ddc100"), (Framing::Rtu, 2, 0, Device::Ddc100Uec));
         let (framing, frames, errors, device) = seen("damaged");
         assert_eq!((framing, device), (Framing::Rtu, v2));
         assert!(frames > 12 && errors > 4, "{frames} {errors}");

@@ -13,6 +13,8 @@ pub enum Action {
     Previous,
     /// To the decode screen.
     Decode,
+    /// To the diagnostic objects.
+    Dop,
     /// To the devices.
     Devices,
     /// To the traffic.
@@ -24,7 +26,7 @@ pub enum Action {
 }
 
 /// All keys with what they do, for the help.
-pub const KEYS: [(&str, &str); 12] = [
+pub const KEYS: [(&str, &str); 13] = [
     ("?", "this list"),
     ("/", "search, or the input"),
     ("j  k", "next and previous entry"),
@@ -35,6 +37,7 @@ pub const KEYS: [(&str, &str); 12] = [
     ("Home  End", "first and last entry"),
     ("Enter", "open the entry"),
     ("g d", "Decode"),
+    ("g o", "DOP objects"),
     ("g l", "Devices"),
     ("g t", "Traffic"),
     ("g s", "Settings"),
@@ -61,6 +64,7 @@ impl Keys {
         }
         match (go, key) {
             (true, "d") => Some(Action::Decode),
+            (true, "o") => Some(Action::Dop),
             (true, "l") => Some(Action::Devices),
             (true, "t") => Some(Action::Traffic),
             (true, "s") => Some(Action::Settings),

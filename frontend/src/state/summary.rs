@@ -129,6 +129,7 @@ pub const fn role(role: Role) -> &'static str {
         Role::Request => "request",
         Role::Response => "response",
         Role::Exception => "exception",
+        Role::Burst => "burst",
         Role::Unknown => "request or response",
         Role::Noise => "noise",
     }

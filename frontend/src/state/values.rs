@@ -1,5 +1,8 @@
 //! The register browser: which lines are shown, and what a value says.
 
+#[cfg(test)]
+mod tests;
+
 use shared::address::{RegisterNumber, Table};
 use shared::capture::Capture;
 use shared::decode::Context;
@@ -12,6 +15,8 @@ use shared::map::search::{Filter, Query, Writes};
 use shared::session::Session;
 use shared::tree::{Decoded, Name};
 use shared::value::{Quality, Value};
+
+use super::order::Order;
 
 /// A line of the register browser.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +34,17 @@ impl Item {
         match self {
             Self::Row(row) | Self::Bit(row, _) => row,
         }
+    }
+
+    /// Which line it is: table, address, and the bit.
+    #[must_use]
+    pub const fn place(self) -> (Table, u16, Option<u16>) {
+        let row = self.row();
+        let bit = match self {
+            Self::Row(_) => None,
+            Self::Bit(_, member) => Some(member.value),
+        };
+        (row.table, row.address.get(), bit)
     }
 }
 
@@ -57,11 +73,19 @@ pub fn has_bits(row: &Row) -> bool {
     row.kind == Kind::Bits && row.set.is_some()
 }
 
-/// The lines that pass a filter.
+/// The lines that pass a filter, in an order that may depend on what was read.
 #[must_use]
-pub fn items(map: &'static DeviceMap, filter: &Filter, opened: &Opened) -> Vec<Item> {
-    let mut items = Vec::new();
-    for row in filter.rows(map) {
+pub fn items(
+    map: &'static DeviceMap,
+    filter: &Filter,
+    opened: &Opened,
+    order: Order,
+    image: &Image,
+) -> Vec<Item> {
+    let mut rows: Vec<_> = filter.rows(map).collect();
+    order.sort(&mut rows, image);
+    let mut items = Vec::with_capacity(rows.len());
+    for row in rows {
         items.push(Item::Row(row));
         if has_bits(row) && opened.contains(&place(row)) {
             let members = row.set.map_or(&[][..], |s| s.members);
@@ -98,6 +122,35 @@ pub const LEVELS: [Level; 4] = [
     Level::Manufacturer,
 ];
 
+/// A line as text with tabs between its columns, as spreadsheets take it: table, address, number,
+/// name, value, unit, quality, raw words, source. What was not read is empty.
+#[must_use]
+pub fn as_text(item: Item, cell: Option<&Cell>) -> String {
+    let row = item.row();
+    let (address, number) = addresses(row);
+    let name = match item {
+        Item::Row(_) => row.label.to_owned(),
+        Item::Bit(_, member) => format!("{}, bit {}: {}", row.label, member.value, member.label),
+    };
+    let raw: Vec<_> = cell
+        .iter()
+        .flat_map(|c| &c.words)
+        .map(|w| format!("{w:04X}"))
+        .collect();
+    [
+        row.table.key(),
+        &address,
+        &number,
+        &name,
+        cell.map_or("", |c| &c.text),
+        cell.map_or("", |c| c.unit),
+        cell.map_or("not read", |c| c.quality.label()),
+        &raw.join(" "),
+        &row.source.to_string(),
+    ]
+    .join("\t")
+}
+
 /// The words for an access.
 #[must_use]
 pub const fn access(access: Access) -> &'static str {
@@ -105,6 +158,7 @@ pub const fn access(access: Access) -> &'static str {
         Access::Read => "read",
         Access::Write => "write",
         Access::WriteGuarded => "write, moves or reconfigures",
+        Access::WriteOnly => "write only, moves or reconfigures",
         Access::Absent => "not on this model",
     }
 }
@@ -285,88 +339,5 @@ impl RawForm {
             text.push("…".to_owned());
         }
         text.join(" ")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use shared::capture::Micros;
-    use shared::map::row::Model;
-
-    fn row(key: &str) -> &'static Row {
-        Model::Icon3000v2.map().by_key(Table::Holding, key).unwrap()
-    }
-
-    fn image(start: u16, words: &[u16]) -> Image {
-        let count = u16::try_from(words.len()).unwrap();
-        let [s0, s1] = start.to_be_bytes();
-        let [c0, c1] = count.to_be_bytes();
-        let mut response = vec![3, u8::try_from(words.len() * 2).unwrap()];
-        response.extend(words.iter().flat_map(|w| w.to_be_bytes()));
-        let mut image = Image::new();
-        image
-            .absorb(&[3, s0, s1, c0, c1], &response, Micros::new(5))
-            .unwrap();
-        image
-    }
-
-    #[test]
-    fn values_are_shown_with_their_unit() {
-        let image = image(3001, &[0x0021, 0, 0, 452]);
-        let position = cell(Item::Row(row("actuator_position")), &image).unwrap();
-        assert_eq!((position.text.as_str(), position.unit), ("45.2", "%"));
-        assert_eq!((position.at, position.numeric), (5, true));
-        let status = row("actuator_status_1");
-        let status_cell = cell(Item::Row(status), &image).unwrap();
-        assert_eq!(status_cell.text, "Close Limit, Selector in REMOTE");
-        let member = status.set.unwrap().get(1).unwrap();
-        let bit = cell(Item::Bit(status, member), &image).unwrap();
-        assert!(bit.faint);
-        assert_eq!(cell(Item::Row(row("output_torque")), &image), None);
-    }
-
-    #[test]
-    fn texts_are_decoded_as_their_answer() {
-        let image = image(
-            3056,
-            &[0x5856, 0x2D31, 0x3031, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
-        );
-        let tag = cell(Item::Row(row("valve_tag_name")), &image).unwrap();
-        assert_eq!(tag.text, "XV-101");
-        let curve: Vec<u16> = (0..64).collect();
-        let image = self::image(3200, &curve);
-        let curve = cell(Item::Row(row("last_close_torque_curve")), &image).unwrap();
-        assert!(curve.text.contains("samples"), "{}", curve.text);
-    }
-
-    #[test]
-    fn lines_follow_filter_and_opened_bits() {
-        let map = Model::Icon3000v2.map();
-        let all = items(map, &Filter::default(), &Opened::new());
-        assert_eq!(all.len(), map.rows.len());
-        let settings = [("q", "status"), ("table", "holding"), ("access", "r")];
-        let filter = filter(|key| {
-            settings
-                .iter()
-                .find(|(k, _)| *k == key)
-                .map(|(_, v)| (*v).to_owned())
-        });
-        let found = items(map, &filter, &Opened::new());
-        assert!(!found.is_empty() && found.len() < 40);
-        let mut opened = Opened::new();
-        toggle(&mut opened, place(row("actuator_status_1")));
-        assert_eq!(items(map, &filter, &opened).len(), found.len() + 16);
-    }
-
-    #[test]
-    fn raw_words_in_three_forms() {
-        assert_eq!(
-            RawForm::Hex.write(&[1, 2, 3, 4, 5], false),
-            "0001 0002 0003 0004 …"
-        );
-        assert_eq!(RawForm::Decimal.write(&[452], false), "452");
-        assert_eq!(RawForm::Binary.write(&[5], false), "0000 0000 0000 0101");
-        assert_eq!(RawForm::Hex.write(&[1], true), "1");
     }
 }

@@ -5,6 +5,8 @@
 
 use core::ops::Range;
 
+use crate::format::within;
+
 /// Highest spacer in pixels that all browsers can do.
 const TALLEST: f64 = 8_000_000.0;
 
@@ -58,7 +60,7 @@ impl Window {
     /// The rows to draw at a scroll position.
     #[must_use]
     pub fn at(&self, scroll: f64) -> Slice {
-        let scroll = scroll.clamp(0.0, (self.spacer() - self.view).max(0.0));
+        let scroll = within(scroll, 0.0, (self.spacer() - self.view).max(0.0));
         let real = scroll * self.stretch();
         let first = (real / self.row).floor() as usize;
         let from = first.saturating_sub(SPARE).min(self.count);
@@ -73,7 +75,7 @@ impl Window {
     /// The rows wholly or partly in view, without the spare ones.
     #[must_use]
     pub fn visible(&self, scroll: f64) -> Range<usize> {
-        let scroll = scroll.clamp(0.0, (self.spacer() - self.view).max(0.0));
+        let scroll = within(scroll, 0.0, (self.spacer() - self.view).max(0.0));
         let real = scroll * self.stretch();
         let first = (real / self.row).floor() as usize;
         let end = ((real + self.view) / self.row).ceil() as usize;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use shared::decode::Context;
 use shared::device::Device;
 use shared::frame::{Frame, Framing};
+use shared::guess::{self, Guess};
 use shared::session::Session;
 use shared::text::{Form, TextProblem};
 use shared::tree::Decoded;
 
-use super::detect::{self, Guess};
 use super::findings::{CLIP, decode_clipped};
 use super::load::Loaded;
 
@@ -124,7 +124,7 @@ impl Work {
     /// What a loader found.
     #[must_use]
     pub fn new(name: String, loaded: Loaded, partial: bool) -> Self {
-        let guess = detect::device(&loaded.session);
+        let guess = guess::device(&loaded.session);
         Self {
             name,
             form: loaded.form,

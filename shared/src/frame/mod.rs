@@ -31,11 +31,23 @@ pub enum Framing {
     Ascii,
     /// Modbus TCP: MBAP header, PDU. Source: Modbus Messaging on TCP/IP V1.0b, section 3.1.3.
     Tcp,
+    /// HART: preamble, delimiter, address, command, count, data, check byte.
+    #[cfg(feature = "hart")]
+    Hart,
+    /// HART-IP: a header of eight bytes, then a frame from delimiter to check byte, or commands.
+    #[cfg(feature = "hart")]
+    HartIp,
 }
 
 impl Framing {
+    /// The framings of Modbus.
+    pub const MODBUS: [Self; 3] = [Self::Rtu, Self::Ascii, Self::Tcp];
     /// All framings.
-    pub const ALL: [Self; 3] = [Self::Rtu, Self::Ascii, Self::Tcp];
+    #[cfg(feature = "hart")]
+    pub const ALL: [Self; 5] = [Self::Rtu, Self::Ascii, Self::Tcp, Self::Hart, Self::HartIp];
+    /// All framings.
+    #[cfg(not(feature = "hart"))]
+    pub const ALL: [Self; 3] = Self::MODBUS;
 
     /// The word used in JSON and on the command line: `modbus-rtu`.
     #[must_use]
@@ -44,6 +56,10 @@ impl Framing {
             Self::Rtu => "modbus-rtu",
             Self::Ascii => "modbus-ascii",
             Self::Tcp => "modbus-tcp",
+            #[cfg(feature = "hart")]
+            Self::Hart => "hart",
+            #[cfg(feature = "hart")]
+            Self::HartIp => "hart-ip",
         }
     }
 
@@ -54,6 +70,10 @@ impl Framing {
             Self::Rtu => "Modbus RTU",
             Self::Ascii => "Modbus ASCII",
             Self::Tcp => "Modbus TCP",
+            #[cfg(feature = "hart")]
+            Self::Hart => "HART",
+            #[cfg(feature = "hart")]
+            Self::HartIp => "HART-IP",
         }
     }
 
@@ -73,6 +93,8 @@ pub enum Role {
     Response,
     /// A device's refusal.
     Exception,
+    /// What a device says unasked (HART).
+    Burst,
     /// A frame of which nothing tells whether it is a request or a response.
     Unknown,
     /// Bytes that belong to no frame.
@@ -87,6 +109,7 @@ impl Role {
             Self::Request => "request",
             Self::Response => "response",
             Self::Exception => "exception",
+            Self::Burst => "burst",
             Self::Unknown => "unknown",
             Self::Noise => "noise",
         }
@@ -110,6 +133,8 @@ impl Marks {
     pub const MALFORMED: Self = Self(16);
     /// A response whose request was seen.
     pub const ANSWERED: Self = Self(32);
+    /// The same request as directly before: an echo or a repetition (HART).
+    pub const AGAIN: Self = Self(64);
 
     /// Both.
     #[must_use]
@@ -239,6 +264,10 @@ pub struct Scanner {
     aligned: bool,
     barren: usize,
     count: u32,
+    #[cfg(feature = "hart")]
+    hart: crate::hart::stream::Line,
+    #[cfg(feature = "hart")]
+    ip: crate::hart::ip::Sequence,
 }
 
 impl Scanner {
@@ -252,6 +281,10 @@ impl Scanner {
             aligned: true,
             barren: 0,
             count: 0,
+            #[cfg(feature = "hart")]
+            hart: crate::hart::stream::Line::new(),
+            #[cfg(feature = "hart")]
+            ip: crate::hart::ip::Sequence::new(),
         }
     }
 
@@ -294,6 +327,10 @@ impl Scanner {
             Framing::Rtu => rtu::next(&view, &self.pairing),
             Framing::Ascii => (ascii::next(&view, &self.pairing), 0),
             Framing::Tcp => (tcp::next(&view, &self.pairing), 0),
+            #[cfg(feature = "hart")]
+            Framing::Hart => crate::hart::stream::next(&view),
+            #[cfg(feature = "hart")]
+            Framing::HartIp => (crate::hart::ip::next(&view), 0),
         };
         // A framer that took nothing would never end.
         let len = found.len.clamp(1, bytes.len());
@@ -310,13 +347,36 @@ impl Scanner {
         };
         if self.aligned {
             self.last_unit = Some(found.unit);
-            if let Some(request) = self.pairing.settle(&found, self.framing, self.count) {
+            if let Some(request) = self.settle(&found, bytes, &mut frame) {
                 frame.pair = request;
                 frame.marks = frame.marks.with(Marks::ANSWERED);
             }
         }
         self.count = self.count.saturating_add(1);
         Some(frame)
+    }
+
+    /// The request that a sound frame answers.
+    #[inline]
+    #[cfg_attr(
+        not(feature = "hart"),
+        expect(unused_variables, reason = "HART needs the bytes")
+    )]
+    fn settle(&mut self, found: &Found, bytes: &[u8], frame: &mut Frame) -> Option<u32> {
+        #[cfg(feature = "hart")]
+        if self.framing == Framing::Hart {
+            let own = bytes.get(..found.len).unwrap_or(bytes);
+            let (request, again) = self.hart.settle(own, self.count);
+            if again {
+                frame.marks = frame.marks.with(Marks::AGAIN);
+            }
+            return request;
+        }
+        #[cfg(feature = "hart")]
+        if self.framing == Framing::HartIp {
+            return self.ip.settle(found, self.count);
+        }
+        self.pairing.settle(found, self.framing, self.count)
     }
 
     /// Number of entries found so far.

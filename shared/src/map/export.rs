@@ -4,7 +4,7 @@ use core::fmt::Write;
 
 use serde::Serialize;
 
-use super::row::{Access, DeviceMap, Level, Row};
+use super::row::{Access, DeviceMap, Function, Level, Member, Model, Row};
 use crate::address::RegisterNumber;
 
 /// One row in JSON. Names and order of the fields are a documented contract of the program.
@@ -29,7 +29,7 @@ struct JsonRow<'a> {
     trust: &'a str,
     number: u32,
     group: &'a str,
-    since: &'a str,
+    since: Option<&'a str>,
     note: &'a str,
     moves: bool,
     reading: Option<JsonReading<'a>>,
@@ -38,7 +38,15 @@ struct JsonRow<'a> {
 #[derive(Serialize)]
 struct JsonSet<'a> {
     kind: &'a str,
-    values: Vec<(u16, &'a str)>,
+    values: Vec<JsonMember<'a>>,
+}
+
+/// A code or bit and its label; a run of codes has its last code as well.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum JsonMember<'a> {
+    One(u16, &'a str),
+    Run(u16, &'a str, u16),
 }
 
 #[derive(Serialize)]
@@ -67,13 +75,13 @@ pub fn json_line(map: &DeviceMap, row: &Row) -> String {
         max: row.range.map(|range| range.1),
         set: row.set.map(|set| JsonSet {
             kind: if set.bits { "bits" } else { "enum" },
-            values: set.members.iter().map(|m| (m.value, m.label)).collect(),
+            values: set.members.iter().map(json_member).collect(),
         }),
         source: row.source.to_string(),
         trust: row.trust.key(),
         number: RegisterNumber::of(row.table, row.address).get(),
         group: row.group,
-        since: row.since.key(),
+        since: row.since.map(Model::key),
         note: row.note,
         moves: moves(row),
         reading: row.reading.map(|reading| JsonReading {
@@ -86,18 +94,36 @@ pub fn json_line(map: &DeviceMap, row: &Row) -> String {
     serde_json::to_string(&line).unwrap_or_default()
 }
 
+fn json_member(m: &Member) -> JsonMember<'_> {
+    if m.value == m.last {
+        JsonMember::One(m.value, m.label)
+    } else {
+        JsonMember::Run(m.value, m.label, m.last)
+    }
+}
+
+/// `5`, or `19200-19300` for a run of codes.
+fn codes(m: &Member) -> String {
+    if m.value == m.last {
+        m.value.to_string()
+    } else {
+        format!("{}-{}", m.value, m.last)
+    }
+}
+
 /// The access of a row without its weight, which is [`moves`].
 const fn access(access: Access) -> &'static str {
     match access {
         Access::Read => "r",
         Access::Write | Access::WriteGuarded => "rw",
+        Access::WriteOnly => "w",
         Access::Absent => "none",
     }
 }
 
 /// True if a write moves or reconfigures equipment.
 fn moves(row: &Row) -> bool {
-    row.access == Access::WriteGuarded
+    row.access.is_guarded()
 }
 
 /// The first line of a CSV file of [`csv_line`]s, without a line end.
@@ -114,7 +140,7 @@ pub fn csv_line(map: &DeviceMap, row: &Row) -> String {
         let members: Vec<_> = set
             .members
             .iter()
-            .map(|m| format!("{}={}", m.value, m.label))
+            .map(|m| format!("{}={}", codes(m), m.label))
             .collect();
         members.join("; ")
     });
@@ -136,7 +162,7 @@ pub fn csv_line(map: &DeviceMap, row: &Row) -> String {
         &number(row.range.map(|range| range.1)),
         &set,
         row.group,
-        row.since.key(),
+        row.since.map_or("", Model::key),
         row.note,
         &row.source.to_string(),
         row.trust.key(),
@@ -146,7 +172,7 @@ pub fn csv_line(map: &DeviceMap, row: &Row) -> String {
 }
 
 /// A cell, in quotes if it needs them.
-fn csv_cell(text: &str) -> String {
+pub(crate) fn csv_cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
@@ -175,11 +201,37 @@ pub fn text_line(row: &Row) -> String {
     line
 }
 
+/// The bits or codes of a row as lines below its [`text_line`], each with a line end.
+#[must_use]
+pub fn text_members(row: &Row) -> String {
+    let mut lines = String::new();
+    for m in row.set.map_or(&[][..], |set| set.members) {
+        // Writing to a String cannot fail.
+        let _ = write!(lines, "{:>13}  {}", codes(m), m.label.replace("{}", "n"));
+        if let Some((zero, one)) = m.states {
+            let _ = write!(lines, " (0: {zero}; 1: {one})");
+        }
+        lines.push('\n');
+    }
+    lines
+}
+
+/// One function of a device for people: code, sub-function, name, source. Without a line end.
+#[must_use]
+pub fn text_function(function: &Function) -> String {
+    let sub = function
+        .sub
+        .map_or_else(String::new, |sub| format!("/ {sub}"));
+    format!(
+        "FC {:02} {sub:<6}   {:<50} {}",
+        function.code, function.label, function.source
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::address::{Address, Table};
-    use crate::map::row::Model;
 
     fn holding(model: Model, address: u16) -> (&'static DeviceMap, &'static Row) {
         let map = model.map();
@@ -234,6 +286,31 @@ mod tests {
         assert_eq!(csv_cell("a \"b\""), "\"a \"\"b\"\"\"");
         let (map, row) = holding(Model::Icon3000v2, 3613);
         assert!(csv_line(map, row).contains(",d,rw,true,user,1,1000,,PST,"));
+    }
+
+    /// FCD LMAIM4019-00, tables 3.7 and 3.8.
+    #[test]
+    fn runs_of_codes_and_functions() {
+        let (map, row) = holding(Model::Ddc100Mx, 0);
+        let line = json_line(map, row);
+        assert!(line.contains("\"access\":\"w\",\"level\":null,\"min\":null"));
+        assert!(line.contains("[6656,\"Move to the argument\"],[19200,\"Move to {} %\",19300]]"));
+        assert!(line.contains("\"since\":null") && line.contains("\"moves\":true"));
+        assert!(csv_line(map, row).contains("; 19200-19300=Move to {} %,Commands,,"));
+        let lines = text_members(row);
+        assert!(lines.starts_with("            0  Null command\n          256  Open\n"));
+        assert!(lines.ends_with("\n  19200-19300  Move to n %\n"));
+        let (_, status) = holding(Model::Ddc100Mx, 8);
+        assert!(text_members(status).contains(
+            "            6  Actuator switched to local mode (0: in REMOTE (before 1999-Q2: or STOP); \
+             1: in LOCAL (after 1999-Q2: or STOP))\n"
+        ));
+        let clear = map.functions.iter().find(|f| f.sub == Some(10));
+        assert_eq!(
+            clear.map(|f| text_function(f)).unwrap_or_default(),
+            "FC 08 / 10     Clear counters and diagnostics register            \
+             FCD LMAIM4019-00, table 3.8, p. 23"
+        );
     }
 
     #[test]

@@ -18,7 +18,7 @@ mod tests;
 use crate::address::{Address, Table};
 use crate::scale::Scale;
 use row::{
-    Access, DeviceMap, Kind, Level, Member, Model, Reading, Row, Set, Settled, Source, Trust,
+    Access, DeviceMap, Function, Kind, Level, Member, Reading, Row, Set, Settled, Source, Trust,
 };
 
 pub(crate) use fields::words;
@@ -26,23 +26,10 @@ pub(crate) use fields::words;
 include!(concat!(env!("OUT_DIR"), "/maps.rs"));
 
 impl Model {
-    /// All models, oldest first.
-    pub const ALL: [Self; 3] = [Self::Icon2000v4, Self::Icon3000, Self::Icon3000v2];
-
     /// The model with this [`key`](Self::key).
     #[must_use]
     pub fn from_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|model| model.key() == key)
-    }
-
-    /// Its map.
-    #[must_use]
-    pub fn map(self) -> &'static DeviceMap {
-        match self {
-            Self::Icon2000v4 => &ICON2000V4,
-            Self::Icon3000 => &ICON3000,
-            Self::Icon3000v2 => &ICON3000V2,
-        }
     }
 }
 
@@ -63,6 +50,13 @@ impl Row {
 }
 
 impl DeviceMap {
+    /// True if the device knows this function code.
+    #[must_use]
+    pub fn implements(&self, function: u8) -> bool {
+        let codes = self.codes.checked_shr(u32::from(function));
+        codes.is_some_and(|codes| codes & 1 != 0)
+    }
+
     /// The row that holds an address, `None` beyond the end of the table.
     ///
     /// One binary search over all rows: this runs for every transaction of a capture.
@@ -135,7 +129,14 @@ impl DeviceMap {
             .find(|row| row.key == key)
     }
 
-    /// The reading with this id, for the ids that notes mention.
+    /// The readings that a note mentions.
+    pub fn mentioned<'a>(&self, note: &'a str) -> impl Iterator<Item = &'static Reading> + use<'a> {
+        let readings = self.readings;
+        note.split(|c: char| !c.is_ascii_alphanumeric())
+            .filter_map(move |word| readings.iter().find(|reading| reading.id == word))
+    }
+
+    /// The reading with this id.
     #[must_use]
     pub fn reading(&self, id: &str) -> Option<&'static Reading> {
         self.readings.iter().find(|reading| reading.id == id)

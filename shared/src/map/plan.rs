@@ -20,7 +20,8 @@ pub fn plan<'r>(table: Table, rows: impl IntoIterator<Item = &'r Row>) -> Vec<Re
     let mut block: Option<(u32, u32)> = None;
     let wanted = rows
         .into_iter()
-        .filter(|r| r.table == table && r.kind != Kind::Reserved && r.access != Access::Absent);
+        .filter(|r| r.table == table && r.kind != Kind::Reserved)
+        .filter(|r| !matches!(r.access, Access::Absent | Access::WriteOnly));
     for row in wanted {
         let start = u32::from(row.address.get());
         let end = start.saturating_add(u32::from(row.words));

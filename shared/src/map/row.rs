@@ -1,8 +1,13 @@
 //! The shape of a map: rows, sets of names, readings and sources. The data are in `shared/data`,
 //! the build turns them into static tables of these types.
 
+use std::borrow::Cow;
+
 use crate::address::{Address, Table};
 use crate::scale::Scale;
+
+/// Generated with the maps, from `models.csv`.
+pub use super::Model;
 
 /// A document and the place in it that a fact was taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,20 +146,29 @@ pub enum Access {
     Write,
     /// Writable, and a write moves or reconfigures equipment.
     WriteGuarded,
+    /// Only to be written, and a write moves or reconfigures equipment.
+    WriteOnly,
     /// Not there on this model.
     Absent,
 }
 
 impl Access {
-    /// `r`, `rw`, `rw!` or `none`, as in the map files.
+    /// `r`, `rw`, `rw!`, `w!` or `none`, as in the map files.
     #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
             Self::Read => "r",
             Self::Write => "rw",
             Self::WriteGuarded => "rw!",
+            Self::WriteOnly => "w!",
             Self::Absent => "none",
         }
+    }
+
+    /// True if a write moves or reconfigures equipment.
+    #[must_use]
+    pub const fn is_guarded(self) -> bool {
+        matches!(self, Self::WriteGuarded | Self::WriteOnly)
     }
 }
 
@@ -184,40 +198,37 @@ impl Level {
     }
 }
 
-/// The models that a map distinguishes; a later one has what the earlier ones have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Model {
-    /// ICON2000v4.
-    Icon2000v4,
-    /// ICON3000.
-    Icon3000,
-    /// ICON3000v2.
-    Icon3000v2,
-}
-
-impl Model {
-    /// The word used in JSON, configuration and the command line.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Icon2000v4 => "icon2000v4",
-            Self::Icon3000 => "icon3000",
-            Self::Icon3000v2 => "icon3000v2",
-        }
-    }
-}
-
 /// One named value of an enumeration, or one named bit.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Member {
     /// Code, or bit number with 0 as the least significant.
     pub value: u16,
+    /// Last code if it stands for a run of codes, otherwise the same.
+    pub last: u16,
     /// Frozen identifier: `close_limit`.
     pub key: &'static str,
-    /// What people read.
+    /// What people read; in the label of a run of codes `{}` stands for the code less the first.
     pub label: &'static str,
     /// For a bit: what 0 and 1 mean where that is not "not active" and "active".
     pub states: Option<(&'static str, &'static str)>,
+}
+
+impl Member {
+    /// True if this code is its own, or one of its run.
+    #[must_use]
+    pub fn has(&self, code: u32) -> bool {
+        (u32::from(self.value)..=u32::from(self.last)).contains(&code)
+    }
+
+    /// The label for one of its codes: `Move to 50 %`.
+    #[must_use]
+    pub fn name(&self, code: u32) -> Cow<'static, str> {
+        if self.value == self.last {
+            return Cow::Borrowed(self.label);
+        }
+        let steps = code.saturating_sub(u32::from(self.value));
+        Cow::Owned(self.label.replace("{}", &steps.to_string()))
+    }
 }
 
 /// A named enumeration or bit set, reused by rows.
@@ -241,10 +252,10 @@ impl Set {
         let guess = usize::try_from(value)
             .ok()
             .and_then(|at| self.members.get(at));
-        if guess.is_some_and(|m| u32::from(m.value) == value) {
+        if guess.is_some_and(|m| m.has(value)) {
             return guess;
         }
-        self.members.iter().find(|m| u32::from(m.value) == value)
+        self.members.iter().find(|m| m.has(value))
     }
 }
 
@@ -277,14 +288,31 @@ pub struct Row {
     pub range: Option<(i32, i32)>,
     /// Group by which people look for it.
     pub group: &'static str,
-    /// First model that has it.
-    pub since: Model,
+    /// First model that has it, where the models are a line of descent.
+    pub since: Option<Model>,
     /// A remark in our words, empty if there is none.
     pub note: &'static str,
     /// Where the manual says so.
     pub source: Source,
     /// How far it can be trusted.
     pub trust: Trust,
+    /// Why it differs from the print.
+    pub reading: Option<&'static Reading>,
+}
+
+/// A function code, or a sub-function of FC 08, that a device knows.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Function {
+    /// The function code.
+    pub code: u8,
+    /// The sub-function, `None` for the function as such.
+    pub sub: Option<u16>,
+    /// Its name in the manual.
+    pub label: &'static str,
+    /// A remark in our words, empty if there is none.
+    pub note: &'static str,
+    /// Where the manual says so.
+    pub source: Source,
     /// Why it differs from the print.
     pub reading: Option<&'static Reading>,
 }
@@ -296,6 +324,14 @@ pub struct DeviceMap {
     pub model: Model,
     /// Name shown to people: `ICON3000v2`.
     pub name: &'static str,
+    /// True if the device has nothing beyond the map, false if the manual leaves the rest open.
+    pub whole: bool,
+    /// Highest unit address that it can be given.
+    pub last_unit: u8,
+    /// What it can be asked, as far as the manual lists it.
+    pub functions: &'static [&'static Function],
+    /// The same as a bit for each function code.
+    pub(super) codes: u128,
     /// Its rows by table and address; they cover their tables without holes or overlaps.
     pub rows: &'static [&'static Row],
     /// All readings of its manual, by id; rows name one, notes may mention others.

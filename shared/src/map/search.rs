@@ -125,8 +125,8 @@ impl Writes {
     fn matches(self, access: Access) -> bool {
         match self {
             Self::No => access == Access::Read,
-            Self::Any => matches!(access, Access::Write | Access::WriteGuarded),
-            Self::Guarded => access == Access::WriteGuarded,
+            Self::Any => access == Access::Write || access.is_guarded(),
+            Self::Guarded => access.is_guarded(),
         }
     }
 }
@@ -172,9 +172,12 @@ impl Filter {
 /// The groups of a map, by name.
 #[must_use]
 pub fn groups(map: &DeviceMap) -> Vec<&'static str> {
-    let mut groups: Vec<_> = map.rows.iter().map(|row| row.group).collect();
-    groups.sort_unstable();
-    groups.dedup();
+    let mut groups: Vec<&'static str> = Vec::new();
+    for row in map.rows {
+        if let Err(place) = groups.binary_search(&row.group) {
+            groups.insert(place, row.group);
+        }
+    }
     groups
 }
 

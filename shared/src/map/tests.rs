@@ -1,5 +1,6 @@
 //! The tables that the build made, against the manual.
 
+mod ddc100;
 mod errata;
 mod lookup;
 mod manual;

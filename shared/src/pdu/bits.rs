@@ -99,7 +99,8 @@ impl<'a> Pdu<'a, '_> {
 
     fn bit_name(&self, table: Table, address: Address) -> Name {
         match self.map().and_then(|m| m.row_at(table, address)) {
-            Some(row) => Name::Row(row),
+            Some(row) if row.words == 1 => Name::Row(row),
+            Some(row) => Name::Part(row, address),
             None => Name::Register(table, address),
         }
     }

@@ -36,9 +36,11 @@ impl<'a> Pdu<'a, '_> {
         Some((address, place))
     }
 
-    /// Start and quantity must stay inside the device's table, or inside 16 bits.
+    /// Start and quantity must stay inside the device's table, as far as its end is known, or
+    /// inside 16 bits.
     pub(super) fn check_end(&mut self, table: Table, start: Address, count: u16, place: Place) {
-        let limit = self.map().map_or(65_536, |m| map::decode::len(m, table));
+        let map = self.map().filter(|map| map.whole);
+        let limit = map.map_or(65_536, |m| map::decode::len(m, table));
         let end = u32::from(start.get()).saturating_add(u32::from(count));
         if end > limit {
             self.find(

@@ -9,6 +9,8 @@ impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         use Finding as F;
         match self.finding {
+            #[cfg(feature = "hart")]
+            F::Hart(finding) => write!(f, "{finding}"),
             F::Noise { len: 1 } => write!(
                 f,
                 "1 byte belongs to no frame: no function code, length and check value fit here."
@@ -147,6 +149,31 @@ impl fmt::Display for Problem {
             F::ReportCount { got, want } => write!(
                 f,
                 "The byte count says {got}, {want} bytes follow; this device counts without unit id and run indicator (reading E63)."
+            ),
+            F::Registers { got, want } if got < want => write!(
+                f,
+                "{got} registers are here, this object has {want}: what is missing has no value."
+            ),
+            F::Registers { got, want } => write!(
+                f,
+                "{got} registers are here, this object has {want}: what comes after them is shown raw."
+            ),
+            F::Records { got, want } => write!(
+                f,
+                "The response says {got} record(s), its registers hold {want} whole one(s)."
+            ),
+            F::NoLayout => write!(
+                f,
+                "No object and option of the manual is asked for, so the registers are shown raw. Check the request word."
+            ),
+            F::DopError { code } => write!(
+                f,
+                "The actuator answered with error {code}: {}.",
+                crate::dop::error_name(code).unwrap_or("not in the manual")
+            ),
+            F::OddTime => write!(
+                f,
+                "A time outside the years 2000 to 2099. The clock was not set, or epoch or unit of time are other ones (reading C16, profile key time)."
             ),
             F::OddDigits => write!(
                 f,

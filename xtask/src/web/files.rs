@@ -38,6 +38,11 @@ impl Folder {
         if is_new {
             path.parent().map_or(Ok(()), fs::create_dir_all)?;
             fs::write(path, content)?;
+            // Until it is compressed anew, no copy is better than one of another build.
+            let packed = super::br_name(path);
+            if packed.exists() {
+                fs::remove_file(&packed)?;
+            }
         }
         self.wanted.insert(path.to_path_buf(), is_new);
         Ok(())
@@ -123,6 +128,13 @@ mod tests {
         assert!(!second.is_new(&a));
         second.remove_the_rest().unwrap();
         assert!(a.exists() && !old.exists());
+
+        let packed = super::super::br_name(&a);
+        fs::write(&packed, b"of a").unwrap();
+        second.write("css/a.css", b"a").unwrap();
+        assert!(packed.exists(), "the file is the same");
+        second.write("css/a.css", b"b").unwrap();
+        assert!(!packed.exists(), "the copy is of another file");
         fs::remove_dir_all(&root).unwrap();
     }
 }

@@ -12,14 +12,12 @@ const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsaf
     style-src 'unsafe-inline'; img-src data: blob:; font-src data:; \
     connect-src ws://127.0.0.1:* ws://localhost:*";
 
-/// Starts the program from the bytes in the page.
-const START: &str = "\
-const wasm = atob(document.getElementById('program').textContent);
-wasm_bindgen({ module_or_path: Uint8Array.from(wasm, c => c.charCodeAt(0)) });
-";
+/// Starts the page from the bytes in the file, and the other programs when they are wanted.
+const START: &str = include_str!("start.js");
 
-/// Builds the single file from `index.html` and the glue for classic scripts.
-pub fn page(source: &Path, index: &str, glue: &Glue) -> Result<String> {
+/// Builds the single file from `index.html` and the glue for classic scripts, that of the page and
+/// those of the programs that it loads later.
+pub fn page(source: &Path, index: &str, glue: &Glue, later: &[(&str, Glue)]) -> Result<String> {
     let page = html::replace_links(index, |tag| {
         let href = tag.attribute("href").unwrap_or_default();
         match tag.attribute("rel") {
@@ -40,17 +38,34 @@ pub fn page(source: &Path, index: &str, glue: &Glue) -> Result<String> {
     let Some((head, tail)) = page.rsplit_once("</body>") else {
         return Err("static/index.html has no </body>".into());
     };
-    let wasm = STANDARD.encode(&glue.wasm);
     let samples = samples(source)?;
+    let later: String = later
+        .iter()
+        .map(|(name, glue)| {
+            let js = script(&glue.js);
+            let wasm = STANDARD.encode(&glue.wasm);
+            format!(
+                "<script type=\"text/plain\" id=\"{name}-glue\">{js}</script>\n\
+             <script type=\"application/base64\" id=\"{name}\">{wasm}</script>\n"
+            )
+        })
+        .collect();
     // A classic script, at the end of the body: everything it needs stands before it.
-    let js = glue.js.replace("</script", "<\\/script");
+    let wasm = STANDARD.encode(&glue.wasm);
+    let js = script(&glue.js);
     Ok(format!(
         "{head}\
          <script type=\"application/json\" id=\"embedded-files\">{samples}</script>\n\
+         {later}\
          <script type=\"application/base64\" id=\"program\">{wasm}</script>\n\
          <script>\n{js}\n{START}</script>\n\
          </body>{tail}"
     ))
+}
+
+/// JavaScript that may stand in a script element.
+fn script(js: &str) -> String {
+    js.replace("</script", "<\\/script")
 }
 
 /// The sample captures as an object from name to base64.
@@ -138,7 +153,11 @@ mod tests {
             js: "'</script>'".into(),
             wasm: vec![1, 2, 3],
         };
-        let page = page(&folder, index, &glue).unwrap();
+        let other = Glue {
+            js: "let other".into(),
+            wasm: vec![4, 5, 6],
+        };
+        let page = page(&folder, index, &glue, &[("other", other)]).unwrap();
         fs::remove_dir_all(&folder).unwrap();
 
         assert!(page.contains("href=\"data:image/svg+xml;base64,PHN2Zy8+\""));
@@ -146,6 +165,8 @@ mod tests {
         assert!(page.contains("{\"samples/s.hex\":\"MDEgMDM=\"}"));
         assert!(page.contains("id=\"program\">AQID</script>"));
         assert!(page.contains("'<\\/script>'"));
+        assert!(page.contains("<script type=\"text/plain\" id=\"other-glue\">let other</script>"));
+        assert!(page.contains("id=\"other\">BAUG</script>"));
         assert!(!page.contains("boot.js") && !page.contains("preload"));
     }
 }

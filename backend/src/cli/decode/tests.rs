@@ -129,3 +129,40 @@ fn readable_text_begins_with_what_is_wrong() {
     );
     assert!(text.ends_with("1 frame, errors in 1 entry\n"));
 }
+
+/// Worked by hand: command 3 of a Rotork actuator, answered with 12 mA and 50 %.
+const HART: &[u8] = b"FF FF FF FF FF 82 AE DD 01 23 45 03 00 95
+    FF FF FF FF FF 86 AE DD 01 23 45 03 1A 00 00 41 40 00 00 39 42 48 00 00 39 42 46 00 00
+    39 41 48 00 00 39 7F A0 00 00 52";
+
+#[test]
+fn hart_frames_say_who_and_what() {
+    for framing in [FramingArg::Auto, FramingArg::Hart] {
+        let (text, tally) = decoded(HART, framing, Format::Json);
+        let lines: Vec<serde_json::Value> = text
+            .lines()
+            .map(|l| serde_json::from_str(l).unwrap())
+            .collect();
+        assert_eq!((lines.len(), tally.errors), (2, 0), "{text}");
+        for (line, role) in lines.iter().zip(["request", "response"]) {
+            assert_eq!(line["framing"], "hart");
+            assert_eq!(line["role"], role);
+            assert_eq!(line["address"], "2EDD012345");
+            assert_eq!(line["master"], "primary");
+            assert_eq!(line["command"], 3);
+            assert!(line.get("unit").is_none());
+        }
+        assert_eq!(lines[0]["pairs_with"], 1);
+        let pv = lines[1]["fields"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|f| f["path"] == "command.3.pv")
+            .unwrap();
+        assert_eq!((&pv["value"], &pv["unit"]), (&50.into(), &"%".into()));
+        assert_eq!(pv["source"], "HART universal commands, command 3");
+    }
+    let (text, _) = decoded(HART, FramingArg::Hart, Format::Text);
+    let who = "#0  request  2EDD012345, primary master, command 3 Read dynamic variables";
+    assert!(text.starts_with(who), "{text}");
+}

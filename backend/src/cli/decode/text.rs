@@ -1,7 +1,7 @@
 //! Frames as people read them: what is wrong first, then byte by byte what it means.
 
 use super::Tally;
-use shared::frame::{Frame, Role};
+use shared::frame::{Frame, Framing, Role};
 use shared::place::Place;
 use shared::problem::{Problem, Severity};
 use shared::render::Spaced;
@@ -50,6 +50,7 @@ pub(super) fn write_frame(
     colour: bool,
     index: u32,
     frame: &Frame,
+    framing: Framing,
     decoded: &Decoded,
 ) -> fmt::Result {
     let paint = Paint(colour);
@@ -66,15 +67,18 @@ pub(super) fn write_frame(
             Role::Request => "request",
             Role::Response => "response",
             Role::Exception => "exception",
+            Role::Burst => "burst",
             Role::Unknown | Role::Noise => "frame",
         };
-        let function = frame.function & 0x7F;
-        let name = shared::pdu::names::function(function).unwrap_or("unknown function");
-        write!(
-            out,
-            "{on}#{index}  {role}  unit {}  FC {function:02} {name}{off}  offset {offset}, {len}",
-            frame.unit
-        )?;
+        write!(out, "{on}#{index}  {role}  ")?;
+        if matches!(framing, Framing::Hart | Framing::HartIp) {
+            out.write_str(&shared::hart::who(framing, decoded.bytes()))?;
+        } else {
+            let function = frame.function & 0x7F;
+            let name = shared::pdu::names::function(function).unwrap_or("unknown function");
+            write!(out, "unit {}  FC {function:02} {name}", frame.unit)?;
+        }
+        write!(out, "{off}  offset {offset}, {len}")?;
         match (frame.pair(), frame.role) {
             (Some(pair), Role::Request) => write!(out, ", answered by #{pair}")?,
             (Some(pair), _) => write!(out, ", answers #{pair}")?,

@@ -212,7 +212,11 @@ fn e34_curves() {
 
 #[test]
 fn e35_blocks_begin_at_22_and_3474() {
-    let since = |address| at(Table::Holding, address).since;
+    let since = |address| {
+        at(Table::Holding, address)
+            .since
+            .expect("a line of descent")
+    };
     assert_eq!((since(21), since(22)), (Model::Icon2000v4, Model::Icon3000));
     assert_eq!(
         (since(3473), since(3474)),

@@ -4,21 +4,29 @@ use super::{at, of};
 use crate::address::{Address, Table};
 use crate::map::row::{Access, Kind, Model, Row};
 
-/// Last address of each table of the newest model.
-const LAST: [(Table, u16); 4] = [
-    (Table::Coil, 10),
-    (Table::Discrete, 31),
-    (Table::Input, 368),
-    (Table::Holding, 3988),
-];
+/// Number of addresses of each table of a model.
+fn lengths(model: Model) -> [(Table, u16); 4] {
+    let [coil, discrete, input, holding] = match model {
+        Model::Icon2000v4 | Model::Icon3000 | Model::Icon3000v2 => [11, 32, 369, 3989],
+        Model::Ddc100Mx => [9, 0, 16, 56],
+        Model::Ddc100Uec => [9, 208, 16, 112],
+        Model::Ddc100Clamshell | Model::Ddc100Io => [9, 208, 16, 56],
+    };
+    [
+        (Table::Coil, coil),
+        (Table::Discrete, discrete),
+        (Table::Input, input),
+        (Table::Holding, holding),
+    ]
+}
 
 #[test]
 fn every_address_is_in_exactly_one_row() {
     for model in Model::ALL {
         let map = model.map();
         assert_eq!(map.model, model);
-        for (table, last) in LAST {
-            for address in (0..=last).map(Address::new) {
+        for (table, length) in lengths(model) {
+            for address in (0..length).map(Address::new) {
                 let holders = map
                     .rows
                     .iter()
@@ -29,7 +37,7 @@ fn every_address_is_in_exactly_one_row() {
                         .is_some_and(|r| r.contains(address))
                 );
             }
-            assert_eq!(map.row_at(table, Address::new(last + 1)), None);
+            assert_eq!(map.row_at(table, Address::new(length)), None);
             assert_eq!(map.row_at(table, Address::new(u16::MAX)), None);
         }
     }

@@ -1,12 +1,12 @@
-//! Which device a stream is about, judged by the addresses it names.
+//! Which device a stream is about, judged by what it says of itself and by the addresses it names.
 
-use shared::address::{Address, Table};
-use shared::decode::pdu_of;
-use shared::device::Device;
-use shared::frame::Role;
-use shared::map::row::Kind;
-use shared::pdu::Asked;
-use shared::session::Session;
+use crate::address::{Address, Table};
+use crate::decode::pdu_of;
+use crate::device::Device;
+use crate::frame::Role;
+use crate::map::row::Kind;
+use crate::pdu::Asked;
+use crate::session::Session;
 
 /// How many entries are looked at.
 const SAMPLE: u32 = 5000;
@@ -94,17 +94,17 @@ fn by_address(pdu: &[u8]) -> Option<Guess> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::load::load;
-    use shared::encode::frame;
-    use shared::frame::Framing;
-    use shared::render::hex;
+    use crate::capture::Capture;
+    use crate::encode::frame;
+    use crate::frame::Framing;
 
     fn guess(pdus: &[&[u8]]) -> Device {
-        let text: Vec<String> = pdus
-            .iter()
-            .map(|pdu| hex(&frame(Framing::Rtu, 0, 9, pdu)))
-            .collect();
-        device(&load(text.join("\n").as_bytes(), None).session).device
+        let mut session = Session::new(Framing::Rtu);
+        for pdu in pdus {
+            session.push(&Capture::of(&frame(Framing::Rtu, 0, 9, pdu)));
+        }
+        session.finish();
+        device(&session).device
     }
 
     #[test]

@@ -1,0 +1,34 @@
+//! Sizes of fields and forms.
+
+use super::model::{Form, Item, Kind};
+
+/// Bytes of a field of fixed size.
+pub(super) fn width(item: &Item) -> usize {
+    match item.kind {
+        Kind::Unsigned(n)
+        | Kind::Packed(n)
+        | Kind::Latin(n)
+        | Kind::Raw(n)
+        | Kind::Named(n, _)
+        | Kind::Bits(n, _) => usize::from(n),
+        Kind::Float | Kind::Time => 4,
+        Kind::Date => 3,
+        Kind::Unit | Kind::Variable | Kind::Additional(_) | Kind::Split(_) => 1,
+        Kind::Nibbles(_) | Kind::Repeat(..) => 0,
+    }
+}
+
+/// The length of a form that is nearest to the one there is.
+pub(super) fn nearest(forms: &'static [Form], got: u16) -> u16 {
+    forms
+        .iter()
+        .flat_map(|f| f.lengths)
+        .copied()
+        .min_by_key(|l| l.abs_diff(got))
+        .unwrap_or(0)
+}
+
+/// The form with the most bytes.
+pub(super) fn longest(forms: &'static [Form]) -> Option<&'static Form> {
+    forms.iter().max_by_key(|f| f.lengths.first())
+}
