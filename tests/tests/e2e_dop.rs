@@ -344,6 +344,9 @@ async fn a_capture_becomes_reads() {
         found.contains("inferred") && found.contains("request 500"),
         "{found}"
     );
+    // The lines of the sample are 60 ms apart: ready in the sixth, all registers in the tenth.
+    let first = page.text("[data-testid=found-read][data-index='0']").await;
+    assert!(first.contains("540.0 ms, busy 300.0 ms"), "{first}");
     page.click("[data-testid=found-read][data-index='1']").await;
     page.wait_for("[data-chart=dop-025c] [data-testid=chart-svg]")
         .await;

@@ -1,5 +1,6 @@
 //! Which frames of a bus are listed, and the frames as a file.
 
+use shared::capture::Micros;
 use shared::frame::Role;
 use shared::render::Spaced;
 use shared::session::Session;
@@ -34,14 +35,28 @@ pub fn listed(session: &Session, filter: &Filter) -> Vec<u32> {
         .collect()
 }
 
-/// Frames as hexadecimal text, one a line, to be kept or decoded again.
+/// Frames as hexadecimal text, one a line, with the time since the start of the backend where it is
+/// known; to be kept or decoded again.
 #[must_use]
 pub fn export(session: &Session, frames: &[u32]) -> String {
     let mut text = String::new();
-    for bytes in frames.iter().filter_map(|index| session.bytes(*index)) {
+    for index in frames {
+        let Some(bytes) = session.bytes(*index) else {
+            continue;
+        };
+        if let Some(at) = session.at(*index) {
+            text.push_str(&clock(at));
+        }
         text.push_str(&format!("{}\n", Spaced(bytes)));
     }
     text
+}
+
+/// `01:02:03.000456 `; days are left out.
+fn clock(at: Micros) -> String {
+    let (seconds, part) = (at.get() / 1_000_000, at.get() % 1_000_000);
+    let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
+    format!("{hour:02}:{minute:02}:{second:02}.{part:06} ")
 }
 
 #[cfg(test)]
@@ -93,5 +108,24 @@ mod tests {
         let session = session();
         let text = export(&session, &[0, 1]);
         assert_eq!(load(text.as_bytes(), None).session.len(), 2);
+    }
+
+    /// By hand: 25 h 1 min 2.5 s leave one hour of a day.
+    #[test]
+    fn an_export_has_times() {
+        assert_eq!(clock(Micros::new(90_062_500_000)), "01:01:02.500000 ");
+        let mut session = Session::new(Framing::Rtu);
+        let bytes = frame(Framing::Rtu, 0, 9, &[3, 0, 0, 0, 1]);
+        session.push(&shared::capture::Capture {
+            at: Some(Micros::new(1_000_002)),
+            ..shared::capture::Capture::of(&bytes)
+        });
+        session.finish();
+        let text = export(&session, &[0]);
+        assert!(text.starts_with("00:00:01.000002 09 03 00 00"), "{text}");
+        assert_eq!(
+            load(text.as_bytes(), None).session.bytes(0),
+            Some(&bytes[..])
+        );
     }
 }

@@ -1,6 +1,8 @@
 //! One line of text to bytes.
 
 use super::push_pairs;
+use super::stamp::Stamp;
+use crate::capture::Micros;
 use crate::problem::Finding;
 
 /// Words that say which way a frame went or belong to a C array; they are no bytes and no mistake.
@@ -17,6 +19,8 @@ pub(super) struct State {
     comment: bool,
     /// The lines begin with offsets, as dumps print them.
     offsets: bool,
+    /// The time at which the line begins, if it begins with one.
+    pub(super) stamp: Option<Micros>,
 }
 
 /// Reads one line. `report` gets a finding, its column from 0, and the length of `out` then.
@@ -63,6 +67,7 @@ pub(super) fn read(
     }
     let mut words = words.as_slice();
     let mut dump = bar < line.len();
+    let mut stamp = Stamp::default();
     // Offsets of dumps, time stamps and labels stand first.
     while let Some(((_, first), rest)) = words.split_first() {
         // The last line of such a dump is an offset alone.
@@ -71,13 +76,14 @@ pub(super) fn read(
             && rest.iter().all(|(_, w)| w.len() == 2)
             && first.iter().all(u8::is_ascii_hexdigit);
         let label = first.ends_with(b":") && !rest.is_empty();
-        if !(offset || label || is_stamp(first)) {
+        if !(offset || label || stamp.takes(first)) {
             break;
         }
         state.offsets |= offset;
         dump |= offset || (label && is_hex(first.strip_suffix(b":").unwrap_or(first)));
         words = rest;
     }
+    state.stamp = stamp.time();
     let lone = words.iter().filter(|(_, w)| w.len() == 1).count();
     // Some tools print bytes without the leading zero.
     let short = lone > 1 && words.iter().all(|(_, w)| w.len() <= 2);
@@ -109,17 +115,6 @@ fn is_label(word: &[u8]) -> bool {
         || LABELS
             .iter()
             .any(|l| word.eq_ignore_ascii_case(l.as_bytes()))
-}
-
-/// `12:00:01`, `12:00:01.250`, `2026-11-22`, `2026-11-22T12:00:01Z`.
-fn is_stamp(word: &[u8]) -> bool {
-    let shape: Vec<u8> = word
-        .iter()
-        .map(|b| if b.is_ascii_digit() { b'9' } else { *b })
-        .collect();
-    let clock = shape.starts_with(b"99:99:99") && !shape.starts_with(b"99:99:99:");
-    let date = shape.starts_with(b"9999-99-99");
-    clock || date
 }
 
 /// The bytes that a word writes; false if it is no hexadecimal.

@@ -4,9 +4,11 @@
 //! Nothing is dropped silently: what is no byte becomes a [`TextProblem`] with line and column.
 
 mod line;
+mod stamp;
 #[cfg(test)]
 mod tests;
 
+use crate::capture::Micros;
 use crate::frame::ascii::hex_digit;
 use crate::frame::{Framing, detect};
 use crate::problem::Finding;
@@ -81,6 +83,8 @@ pub struct HexReader {
     state: line::State,
     skipped: u32,
     first_skipped: Option<TextProblem>,
+    /// Offsets of bytes before which a line had a time, if that is wanted.
+    stamps: Option<Vec<(u64, Micros)>>,
 }
 
 impl HexReader {
@@ -88,6 +92,22 @@ impl HexReader {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A reader that keeps the times with which lines begin; they take memory.
+    #[must_use]
+    pub fn with_stamps() -> Self {
+        Self {
+            stamps: Some(Vec::new()),
+            ..Self::default()
+        }
+    }
+
+    /// Offset of the first byte of each line that began with a time, and that time: microseconds
+    /// since midnight, or since 1970 where the line has a date.
+    #[must_use]
+    pub fn stamps(&self) -> &[(u64, Micros)] {
+        self.stamps.as_deref().unwrap_or_default()
     }
 
     /// Takes a piece of text in; appends the bytes that it writes to `out`.
@@ -161,6 +181,11 @@ impl HexReader {
         });
         (self.skipped, self.first_skipped) = skipped;
         let read = u64::try_from(out.len().saturating_sub(before)).unwrap_or(0);
+        if let (Some(stamps), Some(stamp)) = (&mut self.stamps, self.state.stamp)
+            && read > 0
+        {
+            stamps.push((self.offset, stamp));
+        }
         self.offset = self.offset.saturating_add(read);
     }
 }

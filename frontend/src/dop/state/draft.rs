@@ -1,7 +1,5 @@
 //! A profile while it is being edited: the texts of a form, and what is wrong with them.
 
-use std::collections::BTreeMap;
-
 use serde_json::Value;
 use shared::dop::Profile;
 
@@ -282,7 +280,8 @@ pub struct BitRow {
 /// The form.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Draft {
-    texts: BTreeMap<String, String>,
+    /// Keys with what is written beside them, by key.
+    texts: Vec<(String, String)>,
     /// Rows of the three lists.
     pub bits: [Vec<BitRow>; 3],
 }
@@ -319,16 +318,45 @@ impl Draft {
     /// The text of a field.
     #[must_use]
     pub fn get(&self, key: &str) -> &str {
-        self.texts.get(key).map_or("", String::as_str)
+        match self.place(key) {
+            Ok(at) => &self.texts[at].1,
+            Err(_) => "",
+        }
     }
 
     /// Changes the text of a field.
     pub fn set(&mut self, key: &str, text: String) {
-        if text.trim().is_empty() {
-            self.texts.remove(key);
-        } else {
-            self.texts.insert(key.to_owned(), text);
+        match (self.place(key), text.trim().is_empty()) {
+            (Ok(at), true) => drop(self.texts.remove(at)),
+            (Ok(at), false) => self.texts[at].1 = text,
+            (Err(_), true) => {}
+            (Err(at), false) => self.texts.insert(at, (key.to_owned(), text)),
         }
+    }
+
+    /// Where a key is, or would be.
+    fn place(&self, key: &str) -> Result<usize, usize> {
+        self.texts.binary_search_by(|(k, _)| k.as_str().cmp(key))
+    }
+
+    /// Fields by the section of the file that they stand in, in the order of the form.
+    fn sections(&self) -> Vec<(&'static str, Vec<(&'static str, &str)>)> {
+        let mut all: Vec<(&'static str, Vec<(&'static str, &str)>)> = Vec::new();
+        for spec in specs() {
+            let text = self.get(spec.key);
+            if text.is_empty() {
+                continue;
+            }
+            let (section, key) = spec.key.split_once('.').unwrap_or(("", spec.key));
+            let same = all
+                .iter_mut()
+                .find(|s| !section.is_empty() && s.0 == section);
+            match same {
+                Some((_, keys)) => keys.push((key, text)),
+                None => all.push((section, vec![(key, text)])),
+            }
+        }
+        all
     }
 
     /// The file that the form stands for, right or wrong: the check tells.
@@ -336,7 +364,7 @@ impl Draft {
     pub fn to_json(&self) -> String {
         let mut out =
             String::from("{\n  \"format\": \"valvescope-dop-profile\",\n  \"version\": 1");
-        for (section, keys) in sections(&self.texts) {
+        for (section, keys) in self.sections() {
             out.push_str(",\n  ");
             if section.is_empty() {
                 let (key, text) = &keys[0];
@@ -381,27 +409,6 @@ impl Draft {
 /// All fields of the form.
 pub fn specs() -> impl Iterator<Item = &'static Spec> {
     SECTIONS.iter().flat_map(|section| section.1)
-}
-
-/// Fields by the section of the file that they stand in, in the order of the form.
-fn sections<'a>(
-    texts: &'a BTreeMap<String, String>,
-) -> Vec<(&'static str, Vec<(&'static str, &'a str)>)> {
-    let mut all: Vec<(&'static str, Vec<(&'static str, &'a str)>)> = Vec::new();
-    for spec in specs() {
-        let Some(text) = texts.get(spec.key) else {
-            continue;
-        };
-        let (section, key) = spec.key.split_once('.').unwrap_or(("", spec.key));
-        let same = all
-            .iter_mut()
-            .find(|s| !section.is_empty() && s.0 == section);
-        match same {
-            Some((_, keys)) => keys.push((key, text)),
-            None => all.push((section, vec![(key, text)])),
-        }
-    }
-    all
 }
 
 fn member(out: &mut String, key: &str, text: &str) {

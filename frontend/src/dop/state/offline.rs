@@ -3,10 +3,14 @@
 
 use std::sync::Arc;
 
+use shared::capture::Capture;
 use shared::dop::handshake::Position;
 use shared::dop::object::{Choice, Object};
 use shared::dop::recognise::{Areas, Exchange, FoundRead, recognise};
 use shared::dop::{ObjectRead, Profile, Request, input};
+use shared::frame::Framing;
+use shared::session::Session;
+use shared::text::{Form, HexReader};
 
 use super::kept::{Course, Decoded, Kept};
 use super::saved::Saved;
@@ -92,7 +96,9 @@ impl Offline {
 
     fn capture(text: &str, profile: &Arc<Profile>) -> Option<Self> {
         let loaded = load(text.as_bytes(), None);
-        let found = recognise(&Exchange::all(&loaded.session), profile);
+        let timed = timed(text, loaded.session.framing());
+        let session = timed.as_ref().unwrap_or(&loaded.session);
+        let found = recognise(&Exchange::all(session), profile);
         if found.reads.is_empty() {
             return None;
         }
@@ -138,6 +144,31 @@ impl Offline {
         offline.items.push(Item::plain(kept, profile));
         offline
     }
+}
+
+/// The session of a text whose lines begin with times; `None` if none does.
+fn timed(text: &str, framing: Framing) -> Option<Session> {
+    if shared::text::form_for(text.as_bytes(), Some(framing)) != Form::Hex {
+        return None;
+    }
+    let (mut bytes, mut problems) = (Vec::new(), Vec::new());
+    let mut reader = HexReader::with_stamps();
+    reader.push(text.as_bytes(), &mut bytes, &mut problems);
+    reader.finish(&mut bytes, &mut problems);
+    let (first, _) = reader.stamps().first()?;
+    let place = |offset: u64| usize::try_from(offset).unwrap_or(bytes.len());
+    let mut session = Session::new(framing);
+    session.push(&Capture::of(&bytes[..place(*first)]));
+    for (index, (from, at)) in reader.stamps().iter().enumerate() {
+        let next = reader.stamps().get(index + 1);
+        let end = next.map_or(bytes.len(), |(offset, _)| place(*offset));
+        session.push(&Capture {
+            at: Some(*at),
+            ..Capture::of(&bytes[place(*from)..end])
+        });
+    }
+    session.finish();
+    Some(session)
 }
 
 /// Requests whose answer has so many registers, the likeliest first.
@@ -279,5 +310,29 @@ mod tests {
                 .len()
                 == 1
         );
+    }
+
+    /// The lines of the sample are 60 ms apart. By hand: the request is in the first, the status is
+    /// ready in the sixth, the registers are in the tenth; it is read three times, once afterwards.
+    #[test]
+    fn a_session_has_its_timing() {
+        let text = include_str!("../../../../static/samples/dop-session.txt");
+        let offline = open(text, None);
+        assert!(offline.items.len() >= 2);
+        let course = offline.items[0].decoded.kept.course.as_ref().unwrap();
+        assert_eq!((course.took_us, course.busy_us), (540_000, 300_000));
+        assert_eq!(course.polls, 3);
+        // The same without times.
+        let bare: String = text
+            .lines()
+            .map(|l| format!("{}\n", l.split_once(' ').map_or("", |(_, bytes)| bytes)))
+            .collect();
+        let bare = open(&bare, None);
+        assert_eq!(bare.items.len(), offline.items.len());
+        assert_eq!(
+            bare.items[0].decoded.read.words,
+            offline.items[0].decoded.read.words
+        );
+        assert!(bare.items[0].decoded.kept.course.is_none());
     }
 }

@@ -106,7 +106,7 @@ impl fmt::Display for Why {
             Self::Exception { area, code } => {
                 write!(f, "the device refused {area} with exception {code:02}")?;
                 match names::exception(*code) {
-                    Some((name, _)) => write!(f, ", {}", name.to_lowercase())?,
+                    Some((name, _)) => write!(f, ", {}", name.to_ascii_lowercase())?,
                     None => f.write_str(", which the standard does not know")?,
                 }
                 if *code == 2 {

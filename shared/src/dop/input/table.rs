@@ -112,7 +112,7 @@ fn column(cells: &[Cell<'_>]) -> Option<usize> {
             // `Value (hex)`, `raw_value`.
             let begins = |name: &str| {
                 let rest = name.strip_prefix(wanted)?;
-                rest.starts_with(|c: char| !c.is_alphanumeric())
+                rest.starts_with(|c: char| !c.is_ascii_alphanumeric())
                     .then_some(())
             };
             names.iter().position(|name| begins(name).is_some())
