@@ -61,6 +61,9 @@ pub enum Device {
     Dop,
     /// Limitorque MX/DDC: the field unit of an actuator, DDC-100 network.
     Ddc100Mx,
+    /// Limitorque MX or QX, series B, on a DDC-100 network: as [`Ddc100Mx`](Self::Ddc100Mx), with a
+    /// bit for the user indicators.
+    Ddc100MxB,
     /// Limitorque UEC-3-DDC: the field unit of an actuator, DDC-100 network.
     Ddc100Uec,
     /// Limitorque DDC-100 clamshell field unit.
@@ -73,10 +76,11 @@ pub enum Device {
 
 impl Device {
     /// All choices on a Modbus line.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Icon3000v2,
         Self::Icon3000,
         Self::Ddc100Mx,
+        Self::Ddc100MxB,
         Self::Ddc100Uec,
         Self::Ddc100Clamshell,
         Self::Ddc100Io,
@@ -94,6 +98,7 @@ impl Device {
             Self::Dop => "dop",
             Self::Rotork(family) => family.key(),
             Self::Ddc100Mx => "ddc100-mx",
+            Self::Ddc100MxB => "ddc100-mx-b",
             Self::Ddc100Uec => "ddc100-uec",
             Self::Ddc100Clamshell => "ddc100-clamshell",
             Self::Ddc100Io => "ddc100-io",
@@ -110,6 +115,7 @@ impl Device {
             Self::Dop => "Limitorque DOP",
             Self::Rotork(family) => family.label(),
             Self::Ddc100Mx => "Limitorque DDC-100 MX",
+            Self::Ddc100MxB => "Limitorque DDC-100 MX series B",
             Self::Ddc100Uec => "Limitorque DDC-100 UEC-3",
             Self::Ddc100Clamshell => "Limitorque DDC-100 Clamshell",
             Self::Ddc100Io => "Limitorque DDC-100 I/O Module",
@@ -131,6 +137,7 @@ impl Device {
             Self::Icon3000 => Some(Model::Icon3000.map()),
             Self::Icon3000v2 => Some(Model::Icon3000v2.map()),
             Self::Ddc100Mx => Some(Model::Ddc100Mx.map()),
+            Self::Ddc100MxB => Some(Model::Ddc100MxB.map()),
             Self::Ddc100Uec => Some(Model::Ddc100Uec.map()),
             Self::Ddc100Clamshell => Some(Model::Ddc100Clamshell.map()),
             Self::Ddc100Io => Some(Model::Ddc100Io.map()),

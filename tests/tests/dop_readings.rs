@@ -592,9 +592,23 @@ const HELD: [(&str, Held); 69] = [
     ),
     (
         "C22",
-        Because(
-            "it concerns the legacy register map of older units; the simulator and the map of that register hold it",
-        ),
+        By(|| {
+            use shared::address::{Address, Table};
+            use shared::map::row::Model;
+            let bit_7 = |model: Model| {
+                let row = model.map().row_at(Table::Holding, Address::new(9));
+                let set = row
+                    .and_then(|r| r.set)
+                    .expect("the fault register has bits");
+                set.get(7).map(|bit| bit.label)
+            };
+            assert_eq!(bit_7(Model::Ddc100MxB), Some("Any user indicator active"));
+            assert_eq!(bit_7(Model::Ddc100Mx), None, "older units do not use it");
+            assert_eq!(
+                bit_7(Model::Ddc100Uec),
+                Some("Manually moved from open to mid-travel")
+            );
+        }),
     ),
     (
         "C23",

@@ -83,6 +83,8 @@ enum DeviceArg {
     RotorkSi,
     /// Limitorque DDC-100: MX/DDC field unit.
     Ddc100Mx,
+    /// Limitorque DDC-100: MX or QX of series B.
+    Ddc100MxB,
     /// Limitorque DDC-100: UEC-3-DDC field unit.
     Ddc100Uec,
     /// Limitorque DDC-100: clamshell field unit.
@@ -105,6 +107,7 @@ impl From<DeviceArg> for Device {
             DeviceArg::RotorkCk => Self::Rotork(Family::Ck),
             DeviceArg::RotorkSi => Self::Rotork(Family::Si),
             DeviceArg::Ddc100Mx => Self::Ddc100Mx,
+            DeviceArg::Ddc100MxB => Self::Ddc100MxB,
             DeviceArg::Ddc100Uec => Self::Ddc100Uec,
             DeviceArg::Ddc100Clamshell => Self::Ddc100Clamshell,
             DeviceArg::Ddc100Io => Self::Ddc100Io,

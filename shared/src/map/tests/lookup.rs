@@ -8,7 +8,7 @@ use crate::map::row::{Access, Kind, Model, Row};
 fn lengths(model: Model) -> [(Table, u16); 4] {
     let [coil, discrete, input, holding] = match model {
         Model::Icon2000v4 | Model::Icon3000 | Model::Icon3000v2 => [11, 32, 369, 3989],
-        Model::Ddc100Mx => [9, 0, 16, 56],
+        Model::Ddc100Mx | Model::Ddc100MxB => [9, 0, 16, 56],
         Model::Ddc100Uec => [9, 208, 16, 112],
         Model::Ddc100Clamshell | Model::Ddc100Io => [9, 208, 16, 56],
     };
