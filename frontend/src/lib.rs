@@ -34,6 +34,7 @@
 //! | traffic | `traffic-bus`, `traffic-list`, `frame-row`, `pause`, `clear-traffic`, `filter-unit`, `filter-function`, `filter-problems`, `export`, `traffic-count`, `missed` |
 //! | settings | `theme-system`, `theme-light`, `theme-dark`, `download` |
 
+pub mod actuator;
 pub mod app;
 pub mod browser;
 pub mod chart;
@@ -43,10 +44,14 @@ pub mod dop;
 pub mod erased;
 pub mod format;
 pub mod guest;
+#[cfg(feature = "hart")]
+pub mod hart;
 pub mod keys;
 pub mod live;
 pub mod markup;
+pub mod network;
 pub mod pages;
+pub mod program;
 pub mod router;
 pub mod state;
 pub mod task;

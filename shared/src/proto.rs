@@ -7,9 +7,15 @@
 //!
 //! Changing a variant means a new [`VERSION`].
 
+mod ddc;
 mod dop;
+mod hart;
+mod icon;
 
+pub use ddc::{DDC_PREFIX, DdcAsk, DdcNews, DdcShape, DdcUnit};
 pub use dop::{DOP_PREFIX, DopAsk, DopNews, DopStep, LogFrom, MAX_DOP_REQUESTS};
+pub use hart::{HART_PREFIX, HartAsk, HartCommand, HartNews, MAX_HART_COMMANDS};
+pub use icon::{ICON_PREFIX, IconAsk, IconNews, IconStep, MAX_ICON_STEPS};
 
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +23,10 @@ use crate::address::{Address, Table};
 use crate::encode::Read;
 
 /// Version of this protocol.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
+
+/// How the texts begin that a page passes on, unread, to the program that it hosts.
+pub const PROGRAM_PREFIXES: [&str; 4] = [DOP_PREFIX, HART_PREFIX, DDC_PREFIX, ICON_PREFIX];
 
 /// Largest message that a page may send, in bytes.
 pub const MAX_MESSAGE: usize = 64 * 1024;
@@ -131,6 +140,12 @@ pub enum ToBackend {
     },
     /// About the diagnostic objects of a DOP device; the answers are [`DopNews`].
     Dop(DopAsk),
+    /// About HART devices; the answers are [`HartNews`].
+    Hart(HartAsk),
+    /// About a DDC-100 network; the answers are [`DdcNews`].
+    Ddc(DdcAsk),
+    /// About the files, identity and counters of an ICON3000; the answers are [`IconNews`].
+    Icon(IconAsk),
 }
 
 /// A bus of the configuration.
@@ -303,8 +318,8 @@ mod tests {
             assert_eq!(&serde_json::from_str::<ToBackend>(json).unwrap(), message);
         };
         check(
-            &ToBackend::Hello { version: 2 },
-            r#"{"hello":{"version":2}}"#,
+            &ToBackend::Hello { version: 3 },
+            r#"{"hello":{"version":3}}"#,
         );
         let block = Block {
             table: TableName::Holding,

@@ -45,7 +45,13 @@ const BOOT: &str = include_str!("web/boot.js");
 const PAGE: (&str, &str) = ("frontend", "valvescope");
 
 /// The programs that the page loads when they are wanted; binary and name are the same.
-const LATER: [&str; 1] = ["diagnostics"];
+const LATER: [&str; 4] = ["diagnostics", "network", "actuator", HART];
+
+/// The program that is compiled with HART.
+const HART: &str = "hart";
+
+/// The code of `shared` is small.
+const SMALL: &str = "profile.web.package.shared.opt-level=\"z\"";
 
 /// The files of one program.
 pub struct Program {
@@ -124,11 +130,13 @@ fn compile() -> Result<PathBuf> {
     let mut page = shell::cargo(args);
     page.args(["--bin", PAGE.0]);
     let mut later = shell::cargo(args);
-    later.args(["--config", "profile.web.package.shared.opt-level=\"z\""]);
-    for binary in LATER {
+    later.args(["--config", SMALL]);
+    for binary in LATER.into_iter().filter(|binary| *binary != HART) {
         later.args(["--bin", binary]);
     }
-    for command in [&mut page, &mut later] {
+    let mut hart = shell::cargo(args);
+    hart.args(["--config", SMALL, "--bin", HART, "--features", HART]);
+    for command in [&mut page, &mut later, &mut hart] {
         shell::run(command.env("CARGO_ENCODED_RUSTFLAGS", flags()))?;
     }
     Ok(shell::target_dir().join(WASM).join("web"))

@@ -273,6 +273,9 @@ impl Page<'_> {
                 period_ms,
             } => self.watch(&device, &blocks, period_ms).await,
             ToBackend::Dop(ask) => self.dop(ask).await,
+            ToBackend::Hart(_) | ToBackend::Ddc(_) | ToBackend::Icon(_) => Some(ToPage::Refused {
+                text: "This program does not serve that yet.".into(),
+            }),
         }
     }
 

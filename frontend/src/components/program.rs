@@ -22,6 +22,12 @@ use crate::task::{now_ms, promise};
 
 /// The program of the diagnostic objects.
 pub const DIAGNOSTICS: &str = "diagnostics";
+/// The program of the HART devices.
+pub const HART: &str = "hart";
+/// The program of the DDC-100 networks.
+pub const NETWORK: &str = "network";
+/// The program of the ICON3000 in depth.
+pub const ACTUATOR: &str = "actuator";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use leptos::prelude::*;
-use shared::proto::{Block, DOP_PREFIX, ToBackend, ToPage};
+use shared::proto::{Block, PROGRAM_PREFIXES, ToBackend, ToPage};
 
 use super::backoff::wait_ms;
 use super::socket::{Event, Socket};
@@ -165,7 +165,7 @@ impl Live {
         let _gone = self.inner.try_update_value(|inner| inner.heard = now_ms());
         match event {
             Event::Open => self.send(&[Plant::hello()]),
-            Event::Text(text) if text.starts_with(DOP_PREFIX) => self.pass_on(&text),
+            Event::Text(text) if is_for_program(&text) => self.pass_on(&text),
             Event::Text(text) => match wire::read(&text) {
                 Ok(message) => self.take(message, text),
                 Err(error) => {
@@ -326,6 +326,11 @@ impl Live {
             }
         });
     }
+}
+
+/// True for a message that the page passes on unread.
+fn is_for_program(text: &str) -> bool {
+    PROGRAM_PREFIXES.iter().any(|p| text.starts_with(p))
 }
 
 /// Where the backend is; `None` for a page from a disk.

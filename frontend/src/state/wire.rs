@@ -176,8 +176,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Writes a message of the page. `None` for those about diagnostic objects, which only the program
-/// for them sends, see [`dop`].
+/// Writes a message of the page. `None` for those that only a program of its own sends, see [`dop`].
 #[must_use]
 pub fn write(message: &ToBackend) -> Option<String> {
     let mut out = String::from("{");
@@ -216,7 +215,9 @@ pub fn write(message: &ToBackend) -> Option<String> {
             }
             body.raw("]").number("period_ms", u64::from(*period_ms));
         }
-        ToBackend::Dop(_) => return None,
+        ToBackend::Dop(_) | ToBackend::Hart(_) | ToBackend::Ddc(_) | ToBackend::Icon(_) => {
+            return None;
+        }
     }
     out.push_str("}}");
     Some(out)
