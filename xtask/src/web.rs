@@ -30,6 +30,7 @@ mod compress;
 mod files;
 mod html;
 mod single;
+mod slim;
 
 pub use compress::br_name;
 
@@ -209,8 +210,10 @@ impl Glue {
                  the single file cannot hold it, so find another way"
                 .into());
         }
+        let js = output.js().to_owned();
+        let js = slim::slim(output.wasm_mut(), &js)?;
         Ok(Self {
-            js: output.js().to_owned(),
+            js,
             wasm: output.wasm_mut().emit_wasm(),
         })
     }
