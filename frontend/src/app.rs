@@ -13,7 +13,7 @@ use crate::live::Live;
 use crate::pages::decode::DecodePage;
 use crate::pages::device::DeviceRoute;
 use crate::pages::devices::DevicesPage;
-use crate::pages::dop::DopPage;
+use crate::pages::dop::{DopPage, SnapshotsPage};
 use crate::pages::settings::SettingsPage;
 use crate::pages::traffic::TrafficPage;
 use crate::router::Router;
@@ -28,6 +28,7 @@ enum Page {
     Devices,
     Device,
     Dop,
+    Snapshots,
     Traffic,
     Settings,
 }
@@ -46,6 +47,7 @@ pub fn App() -> impl IntoView {
             Action::Dop => Screen::Dop(String::new()),
             Action::Devices => Screen::Devices,
             Action::Traffic => Screen::Traffic(None),
+            Action::Snapshots => Screen::Snapshots(String::new()),
             Action::Settings => Screen::Settings,
             _ => return,
         };
@@ -57,6 +59,7 @@ pub fn App() -> impl IntoView {
         Screen::Devices => Page::Devices,
         Screen::Device(..) => Page::Device,
         Screen::Dop(_) => Page::Dop,
+        Screen::Snapshots(_) => Page::Snapshots,
         Screen::Traffic(_) => Page::Traffic,
         Screen::Settings => Page::Settings,
     });
@@ -76,6 +79,7 @@ pub fn App() -> impl IntoView {
                 Page::Devices => view! { <DevicesPage/> }.into_any(),
                 Page::Device => view! { <DeviceRoute/> }.into_any(),
                 Page::Dop => view! { <DopPage/> }.into_any(),
+                Page::Snapshots => view! { <SnapshotsPage/> }.into_any(),
                 Page::Traffic => view! { <TrafficPage/> }.into_any(),
                 Page::Settings => view! { <SettingsPage/> }.into_any(),
             }}

@@ -111,7 +111,7 @@ fn place(live: Live, router: Router, device: Option<&String>) -> Option<Place> {
     let route = router.route();
     let tab = match (route.screen, device) {
         (Screen::Device(tag, tab), Some(device)) if tag == *device => tab,
-        (Screen::Dop(tab), None) => tab,
+        (Screen::Dop(tab) | Screen::Snapshots(tab), None) => tab,
         _ => return None,
     };
     let online = live.conn.get().is_up();

@@ -54,6 +54,13 @@ fn links(html: &mut Markup, now: &Screen) {
             is_traffic,
         ),
         (
+            Screen::Snapshots(String::new()),
+            "Snapshots",
+            "nav-snapshots",
+            Glyph::File,
+            matches!(now, Screen::Snapshots(_)),
+        ),
+        (
             Screen::Settings,
             "Settings",
             "nav-settings",

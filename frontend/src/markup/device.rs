@@ -179,9 +179,9 @@ pub fn is_stale(device: &DeviceState, up: bool) -> bool {
     !up || !matches!(device.outcome, Some(Outcome::Ok | Outcome::Exception))
 }
 
-/// The tabs of a device.
-pub fn tabs(html: &mut Markup, tag: &str, now: Tab) {
-    for tab in Tab::ALL {
+/// The tabs of a device; `deep` if a program of its own shows more of it.
+pub fn tabs(html: &mut Markup, tag: &str, now: Tab, deep: bool) {
+    for tab in Tab::ALL.into_iter().filter(|t| deep || !t.is_deep()) {
         let screen = Screen::Device(tag.to_owned(), tab.key().to_owned());
         html.open(
             "a",
@@ -302,9 +302,15 @@ mod tests {
     #[test]
     fn tabs_lead_to_their_addresses() {
         let mut html = Markup::new();
-        tabs(&mut html, "XV 1", Tab::Values);
+        tabs(&mut html, "XV 1", Tab::Values, false);
         let html = html.finish();
+        assert!(!html.contains("curves"));
         assert!(html.contains("href=\"#/device/XV%201/overview\""));
         assert_eq!(html.matches("aria-selected=\"true\"").count(), 1);
+        let mut html = Markup::new();
+        tabs(&mut html, "XV 1", Tab::Logs, true);
+        let html = html.finish();
+        assert!(html.contains("data-testid=\"tab-logs\" aria-selected=\"true\""));
+        assert_eq!(html.matches("role=\"tab\"").count(), 9);
     }
 }

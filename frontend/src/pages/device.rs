@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use leptos::prelude::*;
+use shared::device::Device;
 use shared::map::row::DeviceMap;
 
 use crate::components::conn::ConnNotice;
 use crate::components::drawn::{Draw, Drawn};
-use crate::components::program::{DIAGNOSTICS, Program};
+use crate::components::program::{ACTUATOR, DIAGNOSTICS, Program};
 use crate::components::traffic::TrafficView;
 use crate::components::values::ValuesView;
 use crate::erased::{effect, memo};
@@ -61,15 +62,22 @@ pub fn DevicePage(
         }
         // Programs draw their own tabs.
         if !is_dop.get() {
-            tag.with_value(|t| device::tabs(html, t, tab.get()));
+            let deep = kind.get().is_some_and(Device::is_icon);
+            tag.with_value(|t| device::tabs(html, t, tab.get(), deep));
         }
+    });
+    // A program follows the tabs by itself, so that all of its tabs are one here.
+    let shown = memo(move || match tab.get() {
+        deep if deep.is_deep() && kind.get().is_some_and(Device::is_icon) => Tab::Curves,
+        deep if deep.is_deep() => Tab::Overview,
+        tab => tab,
     });
     let body = move || {
         // Its program follows the tabs by itself.
         if is_dop.get() {
-            return dop(tag.get_value());
+            return program(DIAGNOSTICS, tag.get_value());
         }
-        match (kind.get(), tab.get()) {
+        match (kind.get(), shown.get()) {
         (None, _) => ().into_any(),
         (Some(kind), Tab::Values) => match kind.map() {
             Some(map) => values(tag.get_value(), map),
@@ -85,7 +93,8 @@ pub fn DevicePage(
                 .map(|(bus, unit)| view! { <TrafficView bus=bus only=Some(unit)/> })
                 .into_any()
         }
-        (Some(_), Tab::Overview) => view! {
+        (Some(_), Tab::Curves) => program(ACTUATOR, tag.get_value()),
+        (Some(_), _) => view! {
             <div class="overview" data-testid="overview">
                 <Drawn class="overview-valve" draw=draw(|html, _, o, _, _| valve::valve(html, o))/>
                 <Drawn class="overview-figures" draw=draw(|html, d, o, _, up| device::figures(html, o, device::is_stale(d, up)))/>
@@ -112,8 +121,8 @@ fn values(tag: String, map: &'static DeviceMap) -> AnyView {
     view! { <ValuesView tag=tag map=map/> }.into_any()
 }
 
-fn dop(tag: String) -> AnyView {
-    view! { <Program name=DIAGNOSTICS device=Some(tag)/> }.into_any()
+fn program(name: &'static str, tag: String) -> AnyView {
+    view! { <Program name=name device=Some(tag)/> }.into_any()
 }
 
 /// The page of the device that the address names.

@@ -12,13 +12,41 @@ pub enum Tab {
     Overview,
     /// All registers.
     Values,
+    /// Torque signatures, partial strokes, trends.
+    Curves,
+    /// Alarms, warnings, connections, events.
+    Logs,
+    /// What is wrong, the worst first.
+    Health,
+    /// Who it is.
+    Identity,
+    /// Counters and channels of its Modbus interface.
+    Communication,
+    /// All that can be set.
+    Configuration,
     /// The frames of this device on its bus.
     Traffic,
 }
 
 impl Tab {
     /// All tabs in their order.
-    pub const ALL: [Self; 3] = [Self::Overview, Self::Values, Self::Traffic];
+    pub const ALL: [Self; 9] = [
+        Self::Overview,
+        Self::Values,
+        Self::Curves,
+        Self::Logs,
+        Self::Health,
+        Self::Identity,
+        Self::Communication,
+        Self::Configuration,
+        Self::Traffic,
+    ];
+
+    /// True for a tab that a program of its own shows.
+    #[must_use]
+    pub const fn is_deep(self) -> bool {
+        !matches!(self, Self::Overview | Self::Values | Self::Traffic)
+    }
 
     /// The word in the address.
     #[must_use]
@@ -26,6 +54,12 @@ impl Tab {
         match self {
             Self::Overview => "overview",
             Self::Values => "values",
+            Self::Curves => "curves",
+            Self::Logs => "logs",
+            Self::Health => "health",
+            Self::Identity => "identity",
+            Self::Communication => "communication",
+            Self::Configuration => "configuration",
             Self::Traffic => "traffic",
         }
     }
@@ -36,6 +70,12 @@ impl Tab {
         match self {
             Self::Overview => "Overview",
             Self::Values => "Values",
+            Self::Curves => "Curves",
+            Self::Logs => "Logs",
+            Self::Health => "Health",
+            Self::Identity => "Identity",
+            Self::Communication => "Communication",
+            Self::Configuration => "Configuration",
             Self::Traffic => "Traffic",
         }
     }
@@ -63,6 +103,8 @@ pub enum Screen {
     Device(String, String),
     /// Diagnostic objects, offline, and the word of the open tab.
     Dop(String),
+    /// Saved devices, and the word of the open tab.
+    Snapshots(String),
     /// The frames on a bus; the first one if none is named.
     Traffic(Option<String>),
     /// Settings, sources, help.
@@ -109,6 +151,7 @@ impl Route {
             ("devices", _) | ("device", None) => Screen::Devices,
             ("device", Some(tag)) => Screen::Device(tag, third),
             ("dop", tab) => Screen::Dop(tab.unwrap_or_default()),
+            ("snapshots", tab) => Screen::Snapshots(tab.unwrap_or_default()),
             ("traffic", bus) => Screen::Traffic(bus),
             ("settings", _) => Screen::Settings,
             _ => Screen::Decode,
@@ -161,6 +204,8 @@ impl fmt::Display for Route {
             }
             Screen::Dop(tab) if tab.is_empty() => f.write_str("#/dop")?,
             Screen::Dop(tab) => write!(f, "#/dop/{}", encode(tab))?,
+            Screen::Snapshots(tab) if tab.is_empty() => f.write_str("#/snapshots")?,
+            Screen::Snapshots(tab) => write!(f, "#/snapshots/{}", encode(tab))?,
             Screen::Traffic(None) => f.write_str("#/traffic")?,
             Screen::Traffic(Some(bus)) => write!(f, "#/traffic/{}", encode(bus))?,
             Screen::Settings => f.write_str("#/settings")?,
@@ -188,6 +233,8 @@ mod tests {
             "#/device/MX-301",
             "#/dop",
             "#/dop/profile?q=1",
+            "#/snapshots",
+            "#/snapshots/logs?of=1",
             "#/traffic",
             "#/traffic/bus%201",
             "#/settings",

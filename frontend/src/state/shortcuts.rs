@@ -19,6 +19,8 @@ pub enum Action {
     Devices,
     /// To the traffic.
     Traffic,
+    /// To the snapshots.
+    Snapshots,
     /// To the settings.
     Settings,
     /// Close what lies over the page.
@@ -26,7 +28,7 @@ pub enum Action {
 }
 
 /// All keys with what they do, for the help.
-pub const KEYS: [(&str, &str); 13] = [
+pub const KEYS: [(&str, &str); 14] = [
     ("?", "this list"),
     ("/", "search, or the input"),
     ("j  k", "next and previous entry"),
@@ -40,6 +42,7 @@ pub const KEYS: [(&str, &str); 13] = [
     ("g o", "DOP objects"),
     ("g l", "Devices"),
     ("g t", "Traffic"),
+    ("g n", "Snapshots"),
     ("g s", "Settings"),
     ("Ctrl V", "decode what was copied (Decode)"),
     ("Esc", "close, clear the selection"),
@@ -67,6 +70,7 @@ impl Keys {
             (true, "o") => Some(Action::Dop),
             (true, "l") => Some(Action::Devices),
             (true, "t") => Some(Action::Traffic),
+            (true, "n") => Some(Action::Snapshots),
             (true, "s") => Some(Action::Settings),
             (_, "g") => {
                 self.go = true;

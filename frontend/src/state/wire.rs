@@ -4,6 +4,7 @@
 //! each other.
 
 pub mod dop;
+pub mod icon;
 #[cfg(test)]
 mod tests;
 

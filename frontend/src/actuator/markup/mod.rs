@@ -1,0 +1,33 @@
+//! The program's screens as HTML text. Pure, tested natively.
+
+pub mod communication;
+pub mod configuration;
+pub mod identity;
+pub mod rows;
+pub mod tools;
+
+use shared::map::row::{Reading, Settled};
+
+use crate::markup::Markup;
+
+/// The number of a reading, with its reason for those who ask.
+pub fn reading(html: &mut Markup, reading: &Reading) {
+    let settled = match reading.settled {
+        Settled::Yes => "settled by the text",
+        Settled::Likely => "likely",
+        Settled::No => "open, the raw value decides",
+    };
+    let title = format!("Reading {}: {} ({settled})", reading.id, reading.text);
+    html.open("em", &[("class", "trust"), ("title", &title)])
+        .text(reading.id)
+        .close("em");
+}
+
+/// A heading with a remark beside it.
+pub fn heading(html: &mut Markup, title: &str, remark: &str) {
+    html.open("h2", &[("class", "icon-heading")]).text(title);
+    if !remark.is_empty() {
+        html.text(" ").node("small", "quiet", remark);
+    }
+    html.close("h2");
+}

@@ -1,0 +1,81 @@
+//! The program's screens.
+
+mod registers;
+
+use std::sync::Arc;
+
+use leptos::prelude::*;
+
+use super::store::Store;
+use crate::components::drawn::{Draw, Drawn};
+use crate::erased::memo;
+use crate::markup::Markup;
+
+/// Tabs of a saved device.
+const TABS: [(&str, &str); 6] = [
+    ("curves", "Curves"),
+    ("logs", "Logs"),
+    ("health", "Health"),
+    ("identity", "Identity"),
+    ("communication", "Communication"),
+    ("configuration", "Configuration"),
+];
+
+/// The program: a device on the line, or saved ones.
+#[component]
+pub fn Actuator() -> impl IntoView {
+    let store = Store::provide();
+    let open = memo(move || {
+        let tab = store.tab.get();
+        let known = TABS.iter().any(|(key, _)| *key == tab);
+        if known { tab } else { String::new() }
+    });
+    let tabs: Draw = Arc::new(move |html: &mut Markup| {
+        // Those of a device on the line are drawn by the page.
+        if store.is_live() {
+            return;
+        }
+        let open = open.get();
+        tab(html, "#/snapshots", "", "Snapshots", open.is_empty());
+        if store.saved.with(Vec::is_empty) {
+            return;
+        }
+        for (key, label) in TABS {
+            tab(html, &store.address(key, ""), key, label, key == open);
+        }
+    });
+    let body = part(move || match open.get().as_str() {
+        "communication" => view! { <registers::CommunicationPage/> }.into_any(),
+        "configuration" => view! { <registers::ConfigurationPage/> }.into_any(),
+        "identity" => view! { <registers::IdentityPage/> }.into_any(),
+        _ => view! { <p class="empty">"Choose a tab."</p> }.into_any(),
+    });
+    view! {
+        <div class="icon3000" data-testid="icon">
+            <Drawn class="tabs icon-tabs" role="tablist" label="Saved device" draw=tabs/>
+            {body}
+        </div>
+    }
+}
+
+fn tab(html: &mut Markup, href: &str, key: &str, label: &str, open: bool) {
+    html.open(
+        "a",
+        &[
+            ("class", "tab"),
+            ("role", "tab"),
+            ("href", href),
+            ("data-testid", "icon-tab"),
+            ("data-tab", key),
+            ("aria-selected", if open { "true" } else { "false" }),
+        ],
+    );
+    html.text(label).close("a");
+}
+
+/// A part of a view that changes, behind a box: Leptos would compile the machinery around each such
+/// closure anew.
+fn part(make: impl Fn() -> AnyView + Send + 'static) -> AnyView {
+    let make: Box<dyn Fn() -> AnyView + Send> = Box::new(make);
+    make.into_any()
+}

@@ -1,0 +1,299 @@
+//! Everything that was read of a device: registers, files, identity, counters, and what failed.
+
+use std::collections::BTreeMap;
+
+use shared::capture::Micros;
+use shared::device::Device;
+use shared::image::Image;
+use shared::proto::{IconStep, Outcome, TableName};
+
+/// A record of a file, and when it was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// The word.
+    pub word: u16,
+    /// When it was read, in microseconds.
+    pub at: u64,
+}
+
+/// Why something could not be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// In words.
+    pub text: String,
+    /// When.
+    pub at: u64,
+}
+
+/// An answer as it came.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// The response PDU.
+    pub pdu: Vec<u8>,
+    /// When it came, in microseconds.
+    pub at: u64,
+}
+
+/// A counter as it was read at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// What it said.
+    pub count: u16,
+    /// When, in microseconds.
+    pub at: u64,
+}
+
+/// Readings of a counter that are kept.
+const READINGS: usize = 720;
+
+/// What was asked for, so that a failure finds its place again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Subject {
+    /// A block of registers, by table and first address.
+    Block(u8, u16),
+    /// A file.
+    File(u16),
+    /// FC 17.
+    Identity,
+    /// A sub-function of FC 08.
+    Diagnostic(u16),
+}
+
+impl Subject {
+    /// What a step asks for.
+    #[must_use]
+    pub const fn of(step: IconStep) -> Self {
+        match step {
+            IconStep::Block(block) => Self::Block(
+                match block.table {
+                    TableName::Coil => 1,
+                    TableName::Discrete => 2,
+                    TableName::Holding => 3,
+                    TableName::Input => 4,
+                },
+                block.start,
+            ),
+            IconStep::File { file, .. } => Self::File(file),
+            IconStep::Identity => Self::Identity,
+            IconStep::Diagnostic { sub_function } => Self::Diagnostic(sub_function),
+        }
+    }
+}
+
+/// One device.
+#[derive(Clone, Debug, Default)]
+pub struct Dossier {
+    /// Its tag.
+    pub tag: String,
+    /// Its kind.
+    pub device: Device,
+    /// Where it is from: empty for the device on the line, else the name of a file.
+    pub origin: String,
+    /// Milliseconds since 1970 at the moment 0 of all times in here.
+    pub start_wall_ms: u64,
+    /// Its registers and bits.
+    pub image: Image,
+    /// Records of its files; what was not read is `None`.
+    pub files: BTreeMap<u16, Vec<Option<Record>>>,
+    /// Its answer to FC 17.
+    pub identity: Option<Answer>,
+    /// Its counters of FC 08, by sub-function, the latest last.
+    pub counters: BTreeMap<u16, Vec<Reading>>,
+    /// What could not be read.
+    pub failed: BTreeMap<Subject, Failure>,
+}
+
+impl Dossier {
+    /// A device of which nothing is known yet.
+    #[must_use]
+    pub fn new(tag: &str, device: Device) -> Self {
+        Self {
+            tag: tag.to_owned(),
+            device,
+            ..Self::default()
+        }
+    }
+
+    /// Seconds since 1970 at a time of this device.
+    #[must_use]
+    pub fn wall(&self, at: u64) -> i64 {
+        let ms = self.start_wall_ms.saturating_add(at / 1000);
+        i64::try_from(ms / 1000).unwrap_or(i64::MAX)
+    }
+
+    /// Takes a good answer in. False if it is none to what was asked.
+    pub fn absorb(&mut self, request: &[u8], response: &[u8], at: u64) -> bool {
+        let taken = match request {
+            [0x11] if response.first() == Some(&0x11) => {
+                self.identity = Some(Answer {
+                    pdu: response.to_vec(),
+                    at,
+                });
+                Some(Subject::Identity)
+            }
+            &[8, high, low, ..] => self.counter(u16::from_be_bytes([high, low]), response, at),
+            [0x14, ..] => self.records(request, response, at),
+            _ => self
+                .image
+                .absorb(request, response, Micros::new(at))
+                .map(|(table, start, _)| Subject::Block(table.read_function(), start.get())),
+        };
+        if let Some(subject) = taken {
+            self.failed.remove(&subject);
+        }
+        taken.is_some()
+    }
+
+    fn counter(&mut self, sub: u16, response: &[u8], at: u64) -> Option<Subject> {
+        let &[8, high, low, a, b] = response else {
+            return None;
+        };
+        if u16::from_be_bytes([high, low]) != sub {
+            return None;
+        }
+        let readings = self.counters.entry(sub).or_default();
+        readings.push(Reading {
+            count: u16::from_be_bytes([a, b]),
+            at,
+        });
+        if readings.len() > READINGS {
+            readings.remove(0);
+        }
+        Some(Subject::Diagnostic(sub))
+    }
+
+    /// The response repeats neither file nor record; both are in the request. One group with as
+    /// many records as were asked for, or nothing is taken.
+    fn records(&mut self, request: &[u8], response: &[u8], at: u64) -> Option<Subject> {
+        let &[0x14, 7, 6, f0, f1, r0, r1, n0, n1] = request else {
+            return None;
+        };
+        let word = |high, low| u16::from_be_bytes([high, low]);
+        let (file, first, count) = (word(f0, f1), word(r0, r1), usize::from(word(n0, n1)));
+        let [0x14, all, length, 6, data @ ..] = response else {
+            return None;
+        };
+        let sound = data.len() == count * 2
+            && usize::from(*length) == data.len() + 1
+            && usize::from(*all) == data.len() + 2;
+        if !sound {
+            return None;
+        }
+        let kept = self.files.entry(file).or_default();
+        let first = usize::from(first);
+        if kept.len() < first + count {
+            kept.resize(first + count, None);
+        }
+        for (record, pair) in kept.iter_mut().skip(first).zip(data.chunks_exact(2)) {
+            if let [high, low] = pair {
+                *record = Some(Record {
+                    word: word(*high, *low),
+                    at,
+                });
+            }
+        }
+        Some(Subject::File(file))
+    }
+
+    /// Notes that something could not be read.
+    pub fn fail(&mut self, step: IconStep, outcome: Outcome, text: &str, at: u64) {
+        let text = text.to_owned();
+        self.failed
+            .insert(Subject::of(step), Failure { outcome, text, at });
+    }
+
+    /// The words of a file from its beginning up to the first that is missing.
+    #[must_use]
+    pub fn words(&self, file: u16) -> Vec<u16> {
+        let records = self.files.get(&file).map_or(&[][..], Vec::as_slice);
+        records.iter().map_while(|r| r.map(|r| r.word)).collect()
+    }
+
+    /// When the oldest of the records of a file was read.
+    #[must_use]
+    pub fn read_at(&self, file: u16) -> Option<u64> {
+        let records = self.files.get(&file)?;
+        records.iter().flatten().map(|r| r.at).min()
+    }
+
+    /// The latest reading of a counter.
+    #[must_use]
+    pub fn count(&self, sub: u16) -> Option<Reading> {
+        self.counters.get(&sub)?.last().copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::address::{Address, Table};
+
+    fn empty() -> Dossier {
+        Dossier::new("XV-101", Device::Icon3000v2)
+    }
+
+    /// Records 2 and 3 of file 2, then 0 and 1: the layout of Modbus V1.1b3, section 6.14.
+    #[test]
+    fn records_fill_a_file_in_any_order() {
+        let mut dossier = empty();
+        assert!(dossier.absorb(
+            &[0x14, 7, 6, 0, 2, 0, 2, 0, 2],
+            &[0x14, 6, 5, 6, 0x0D, 0xFE, 0, 0x20],
+            9,
+        ));
+        assert!(dossier.words(2).is_empty());
+        assert!(dossier.absorb(
+            &[0x14, 7, 6, 0, 2, 0, 0, 0, 2],
+            &[0x14, 6, 5, 6, 0, 1, 0x30, 0],
+            5,
+        ));
+        assert_eq!(dossier.words(2), [1, 0x3000, 0x0DFE, 0x20]);
+        assert_eq!(dossier.read_at(2), Some(5));
+        assert_eq!(dossier.read_at(3), None);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let mut dossier = empty();
+        let request = [0x14, 7, 6, 0, 2, 0, 0, 0, 1];
+        for response in [
+            &[0x94, 2][..],
+            &[0x14, 4, 3, 6, 0],
+            &[0x14, 4, 3, 5, 0, 1],
+            &[0x14, 6, 5, 6, 0, 1, 0, 2],
+            &[0x14, 5, 3, 6, 0, 1],
+            &[],
+        ] {
+            assert!(!dossier.absorb(&request, response, 1), "{response:?}");
+        }
+        assert!(!dossier.absorb(&[8, 0, 11, 0, 0], &[8, 0, 12, 0, 1], 1));
+        assert!(!dossier.absorb(&[0x11], &[0x91, 4], 1));
+        assert!(dossier.files.is_empty() && dossier.counters.is_empty());
+    }
+
+    #[test]
+    fn registers_identity_and_counters_are_kept() {
+        let mut dossier = empty();
+        let step = IconStep::Diagnostic { sub_function: 11 };
+        dossier.fail(step, Outcome::Silence, "no answer", 1);
+        assert!(dossier.absorb(&[3, 0x0B, 0xBC, 0, 1], &[3, 2, 0, 0xF0], 7));
+        let cell = dossier.image.cell(Table::Holding, Address::new(3004));
+        assert_eq!(cell.map(|c| c.word), Some(0xF0));
+        assert!(dossier.absorb(&[0x11], &[0x11, 2, 0, 0], 8));
+        assert_eq!(dossier.identity.as_ref().map(|a| a.at), Some(8));
+        for (count, at) in [(5, 10), (9, 20)] {
+            assert!(dossier.absorb(&[8, 0, 11, 0, 0], &[8, 0, 11, 0, count], at));
+        }
+        assert_eq!(dossier.count(11), Some(Reading { count: 9, at: 20 }));
+        assert!(dossier.failed.is_empty(), "an answer mends a failure");
+    }
+
+    #[test]
+    fn times_are_told_on_our_clock() {
+        let mut dossier = empty();
+        dossier.start_wall_ms = 1_765_000_000_500;
+        assert_eq!(dossier.wall(2_600_000), 1_765_000_003);
+    }
+}

@@ -1,0 +1,265 @@
+//! Reading under way: how far it is, how long it may take, and what comes next.
+
+use shared::proto::{IconNews, IconStep, Outcome};
+
+use super::dossier::Dossier;
+use super::wanted::Wanted;
+
+/// What is being read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Job {
+    /// Number of the message under way.
+    pub id: u32,
+    /// All that is wanted.
+    pub wanted: Wanted,
+    /// What counts as read: everything from this time on, in microseconds.
+    since: u64,
+    /// When it began.
+    began: u64,
+    /// Steps of the message under way.
+    steps: Vec<IconStep>,
+    /// Requests that are done, of the messages before included.
+    pub done: u32,
+    /// Requests in all, as far as known.
+    pub total: u32,
+    before: u32,
+    /// What is read now, in words.
+    pub text: String,
+    /// True once it was told to end.
+    pub cancelled: bool,
+}
+
+impl Job {
+    /// A job, if something is missing.
+    #[must_use]
+    pub fn new(id: u32, wanted: Wanted, dossier: &Dossier, since: u64, now: u64) -> Option<Self> {
+        let steps = wanted.missing(dossier, since);
+        let total = u32::try_from(steps.len()).unwrap_or(u32::MAX);
+        let text = wanted.what.clone();
+        (!steps.is_empty()).then_some(Self {
+            id,
+            wanted,
+            since,
+            began: now,
+            steps,
+            done: 0,
+            total,
+            before: 0,
+            text,
+            cancelled: false,
+        })
+    }
+
+    /// What to ask for now.
+    #[must_use]
+    pub fn steps(&self) -> &[IconStep] {
+        &self.steps
+    }
+
+    /// Takes news in; true if the message under way is over.
+    pub fn hear(&mut self, news: &IconNews, dossier: &mut Dossier) -> bool {
+        match news {
+            IconNews::Exchange {
+                step,
+                request,
+                response,
+                outcome,
+                text,
+                at_us,
+                ..
+            } => {
+                let step = usize::try_from(*step).ok();
+                let Some(step) = step.and_then(|at| self.steps.get(at)).copied() else {
+                    return false;
+                };
+                let good = *outcome == Outcome::Ok
+                    && dossier.absorb(&bytes_of(request), &bytes_of(response), *at_us);
+                if !good {
+                    let text = if *outcome == Outcome::Ok {
+                        "The answer does not fit what was asked."
+                    } else {
+                        text
+                    };
+                    dossier.fail(step, *outcome, text, *at_us);
+                }
+            }
+            IconNews::Progress {
+                done, total, text, ..
+            } => {
+                self.done = self.before.saturating_add(*done);
+                self.total = self.before.saturating_add(*total).max(self.done);
+                self.text.clone_from(text);
+            }
+            IconNews::Done { ok, failed, .. } => {
+                let sent = ok.saturating_add(*failed);
+                self.before = self.before.saturating_add(sent);
+                self.done = self.before;
+                self.total = self.total.max(self.before);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Goes on with what is still missing, under a new number; false if nothing is, or if it was
+    /// told to end.
+    pub fn next(&mut self, id: u32, dossier: &Dossier) -> bool {
+        let steps = self.wanted.missing(dossier, self.since);
+        // The same again would come to nothing again.
+        if self.cancelled || steps.is_empty() || steps == self.steps {
+            return false;
+        }
+        self.id = id;
+        self.steps = steps;
+        let more = u32::try_from(self.steps.len()).unwrap_or(u32::MAX);
+        self.total = self.before.saturating_add(more);
+        true
+    }
+
+    /// What is left of it, to go on with later.
+    #[must_use]
+    pub fn is_whole(&self, dossier: &Dossier) -> bool {
+        self.wanted.missing(dossier, self.since).is_empty()
+    }
+
+    /// From when on what was read counts.
+    #[must_use]
+    pub const fn since(&self) -> u64 {
+        self.since
+    }
+
+    /// `12 of 32 requests, 3 s left`.
+    #[must_use]
+    pub fn progress(&self, now: u64) -> String {
+        let mut text = format!("{} of {} requests", self.done, self.total);
+        if self.cancelled {
+            text.push_str(", ending");
+            return text;
+        }
+        let left = u64::from(self.total.saturating_sub(self.done));
+        let passed = now.saturating_sub(self.began);
+        // Two requests say enough about the third.
+        if self.done >= 2 && left > 0 {
+            let micros = passed / u64::from(self.done) * left;
+            text.push_str(&match micros.div_ceil(1_000_000) {
+                seconds @ 0..120 => format!(", {seconds} s left"),
+                seconds => format!(", {} min left", seconds.div_ceil(60)),
+            });
+        }
+        text
+    }
+}
+
+/// Bytes from hexadecimal; empty if that is not what it is.
+fn bytes_of(hex: &str) -> Vec<u8> {
+    let pairs = hex.as_bytes().chunks(2);
+    let bytes = pairs.map(|pair| {
+        let text = core::str::from_utf8(pair).ok()?;
+        (pair.len() == 2).then(|| u8::from_str_radix(text, 16).ok())?
+    });
+    bytes.collect::<Option<Vec<u8>>>().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::device::Device;
+
+    fn exchange(step: u32, request: &str, response: &str, outcome: Outcome) -> IconNews {
+        IconNews::Exchange {
+            id: 1,
+            device: "XV".into(),
+            step,
+            request: request.into(),
+            response: response.into(),
+            outcome,
+            text: "illegal data address".into(),
+            at_us: 100,
+        }
+    }
+
+    fn done(ok: u32, failed: u32) -> IconNews {
+        IconNews::Done {
+            id: 1,
+            device: "XV".into(),
+            ok,
+            failed,
+        }
+    }
+
+    fn wanted() -> Wanted {
+        Wanted {
+            what: "logs".into(),
+            files: vec![2, 3],
+            ..Wanted::default()
+        }
+    }
+
+    #[test]
+    fn a_log_takes_two_messages() {
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        let mut job = Job::new(1, wanted(), &dossier, 50, 0).unwrap();
+        assert_eq!(job.steps().len(), 2);
+        let head = exchange(
+            0,
+            "14070600020000 0001".replace(' ', "").as_str(),
+            "14040306 0002".replace(' ', "").as_str(),
+            Outcome::Ok,
+        );
+        assert!(!job.hear(&head, &mut dossier));
+        let refused = exchange(1, "140706000300000001", "9402", Outcome::Exception);
+        assert!(!job.hear(&refused, &mut dossier));
+        assert!(job.hear(&done(1, 1), &mut dossier));
+        assert!(!job.is_whole(&dossier));
+        assert!(job.next(2, &dossier));
+        let rest = IconStep::File {
+            file: 2,
+            start: 1,
+            count: 6,
+        };
+        assert_eq!((job.id, job.steps()), (2, &[rest][..]));
+        let words = "14".to_owned() + "0E0D06" + &"0001".repeat(6);
+        job.hear(
+            &exchange(0, "140706000200010006", &words, Outcome::Ok),
+            &mut dossier,
+        );
+        assert!(job.hear(&done(1, 0), &mut dossier));
+        assert!(job.is_whole(&dossier) && !job.next(3, &dossier));
+        assert_eq!(dossier.words(2).len(), 7);
+        assert_eq!((job.done, job.total), (3, 3));
+    }
+
+    #[test]
+    fn an_answer_that_does_not_fit_is_a_failure() {
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        let mut job = Job::new(1, wanted(), &dossier, 0, 0).unwrap();
+        for response in ["1404030600", "zz", ""] {
+            job.hear(
+                &exchange(0, "140706000200000001", response, Outcome::Ok),
+                &mut dossier,
+            );
+        }
+        assert_eq!(dossier.failed.len(), 1);
+        job.hear(&exchange(9, "", "", Outcome::Ok), &mut dossier);
+        job.hear(&done(0, 2), &mut dossier);
+        let again = job.next(2, &dossier);
+        assert!(again, "file 3 was not answered at all");
+        job.hear(&done(0, 1), &mut dossier);
+        assert!(!job.next(3, &dossier), "the same again is not asked");
+    }
+
+    #[test]
+    fn progress_is_told_in_words() {
+        let dossier = Dossier::new("XV", Device::Icon3000v2);
+        let mut job = Job::new(1, wanted(), &dossier, 0, 1_000_000).unwrap();
+        assert_eq!(job.progress(1_000_000), "0 of 2 requests");
+        (job.done, job.total) = (12, 32);
+        // Twelve took 1.8 s, so twenty take 3 s.
+        assert_eq!(job.progress(2_800_000), "12 of 32 requests, 3 s left");
+        assert_eq!(job.progress(121_000_000), "12 of 32 requests, 4 min left");
+        job.cancelled = true;
+        assert_eq!(job.progress(2_800_000), "12 of 32 requests, ending");
+        let nothing = Wanted::default();
+        assert_eq!(Job::new(1, nothing, &dossier, 0, 0), None);
+    }
+}

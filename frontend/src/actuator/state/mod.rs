@@ -1,0 +1,5 @@
+//! What the program knows, without signals and without the browser. Tested natively.
+
+pub mod dossier;
+pub mod job;
+pub mod wanted;

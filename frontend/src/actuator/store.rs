@@ -1,0 +1,377 @@
+//! What the program knows, as signals: the device on the line, saved devices, the clock.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+use std::time::Duration;
+
+use leptos::prelude::*;
+use shared::device::Device;
+use shared::proto::{IconAsk, IconNews, ToPage};
+
+use super::state::dossier::Dossier;
+use super::state::job::Job;
+use super::state::wanted::Wanted;
+use crate::erased::{effect, memo};
+use crate::guest::Guest;
+use crate::state::wire;
+
+thread_local! {
+    /// What stays while the program is not shown: the page closes it with every change of screen,
+    /// and reading a device anew takes minutes on a slow line.
+    static KEPT: RefCell<Kept> = const { RefCell::new(Kept { sites: Vec::new(), saved: Vec::new() }) };
+}
+
+#[derive(Default)]
+struct Kept {
+    sites: Vec<Site>,
+    saved: Vec<Arc<Dossier>>,
+}
+
+/// The device on the line.
+#[derive(Clone, Debug, Default)]
+pub struct Site {
+    /// What was read of it.
+    pub dossier: Dossier,
+    /// What is being read.
+    pub job: Option<Job>,
+    /// A read that was ended before it was whole, and from when on its answers count.
+    pub broken: Option<(Wanted, u64)>,
+    /// How the last read ended, in words.
+    pub last: String,
+}
+
+/// The store.
+#[derive(Clone, Copy, Debug)]
+pub struct Store {
+    guest: Guest,
+    /// Tag of the device on the line, empty for saved ones.
+    pub tag: Memo<String>,
+    /// The open tab.
+    pub tab: Memo<String>,
+    /// True while there is a connection.
+    pub online: Memo<bool>,
+    /// The device on the line.
+    pub site: RwSignal<Site>,
+    /// Saved devices that are open.
+    pub saved: RwSignal<Vec<Arc<Dossier>>>,
+    /// Seconds since 1970, once a second.
+    pub now: RwSignal<i64>,
+    /// Microseconds of the backend's clock, once a second.
+    pub now_us: RwSignal<u64>,
+    next: StoredValue<u32>,
+}
+
+impl Store {
+    /// Listens to the page and makes the store available.
+    pub fn provide() -> Self {
+        let guest = Guest::get();
+        let place = guest.place;
+        let saved = KEPT.with_borrow(|kept| kept.saved.clone());
+        let store = Self {
+            guest,
+            tag: memo(move || place.with(|p| p.device.clone().unwrap_or_default())),
+            tab: memo(move || place.with(|p| p.tab.clone())),
+            online: memo(move || place.with(|p| p.online)),
+            site: RwSignal::new(Site::default()),
+            saved: RwSignal::new(saved),
+            now: RwSignal::new(wall_now()),
+            now_us: RwSignal::new(guest.now_us()),
+            next: StoredValue::new(first_id()),
+        };
+        provide_context(store);
+        let clock = set_interval_with_handle(
+            move || {
+                store.now.set(wall_now());
+                store.now_us.set(guest.now_us());
+            },
+            Duration::from_secs(1),
+        );
+        on_cleanup(move || {
+            if let Ok(clock) = clock {
+                clock.clear();
+            }
+            store.keep();
+        });
+        effect(move || {
+            let tag = store.tag.get();
+            let kept = KEPT.with_borrow(|kept| {
+                let site = kept.sites.iter().find(|s| s.dossier.tag == tag);
+                site.cloned()
+            });
+            store.site.set(kept.unwrap_or_else(|| Site {
+                dossier: Dossier::new(&tag, Device::None),
+                ..Site::default()
+            }));
+        });
+        guest.listen(move |text| store.hear(text));
+        effect(move || {
+            if !store.online.get() {
+                store.site.update(Site::lost);
+            }
+        });
+        store
+    }
+
+    /// The store of this program.
+    #[must_use]
+    pub fn get() -> Self {
+        expect_context()
+    }
+
+    /// A setting of the address.
+    #[must_use]
+    pub fn query(self, key: &str) -> Option<String> {
+        self.guest.place.with(|p| p.get(key).map(str::to_owned))
+    }
+
+    /// Goes to an address of the page.
+    pub fn go(self, hash: &str) {
+        self.guest.go(hash);
+    }
+
+    /// True if the device on the line is shown, not a saved one.
+    #[must_use]
+    pub fn is_live(self) -> bool {
+        self.tag.with(|tag| !tag.is_empty())
+    }
+
+    /// The address of a tab of what is shown.
+    #[must_use]
+    pub fn address(self, tab: &str, query: &str) -> String {
+        let tag = self.tag.get();
+        let mut address = if tag.is_empty() {
+            format!("#/snapshots/{tab}?of={}", self.index().unwrap_or(0))
+        } else {
+            format!("#/device/{}/{tab}", crate::format::encode(&tag))
+        };
+        if !query.is_empty() {
+            address.push(if tag.is_empty() { '&' } else { '?' });
+            address.push_str(query);
+        }
+        address
+    }
+
+    /// Which saved device the address names.
+    #[must_use]
+    pub fn index(self) -> Option<usize> {
+        self.query("of")?.parse().ok()
+    }
+
+    /// Looks at the device that is shown, and follows it.
+    pub fn with<T>(self, look: impl FnOnce(&Dossier) -> T) -> T {
+        if self.is_live() {
+            return self.site.with(|site| look(&site.dossier));
+        }
+        let at = self.index().unwrap_or(0);
+        self.saved.with(|saved| match saved.get(at) {
+            Some(dossier) => look(dossier),
+            None => look(&Dossier::default()),
+        })
+    }
+
+    fn hear(self, text: &str) {
+        // The program may be closed by now.
+        let Some(tag) = self.tag.try_get_untracked() else {
+            return;
+        };
+        if let Some(news) = wire::icon::read(text) {
+            if *device_of(&news) == tag {
+                let mut next = None;
+                self.site.update(|site| next = site.hear(&news, self.next));
+                if let Some(ask) = next {
+                    self.send(&ask);
+                }
+            }
+        } else if let Ok(ToPage::Hello {
+            now_us,
+            wall_ms,
+            devices,
+            ..
+        }) = wire::read(text)
+        {
+            let found = devices.iter().find(|d| d.tag == tag);
+            let device = found.and_then(|d| Device::from_key(&d.kind));
+            let start = wall_ms.saturating_sub(now_us / 1000);
+            self.site.update(|site| site.greeted(device, start));
+        }
+    }
+
+    fn send(self, ask: &IconAsk) {
+        self.guest.send(&wire::icon::write(ask));
+    }
+
+    fn next_id(self) -> u32 {
+        let id = self.next.get_value();
+        self.next.set_value(id.wrapping_add(1));
+        id
+    }
+
+    /// Reads all of these anew.
+    pub fn read(self, wanted: Wanted) {
+        self.begin(wanted, self.guest.now_us());
+    }
+
+    /// Reads what of these was never read.
+    pub fn fill(self, wanted: Wanted) {
+        self.begin(wanted, 0);
+    }
+
+    /// Goes on with a read that was ended.
+    pub fn resume(self) {
+        let broken = self.site.try_update(|site| site.broken.take()).flatten();
+        if let Some((wanted, since)) = broken {
+            // What failed then is tried again.
+            self.site.update(|site| site.dossier.failed.clear());
+            self.begin(wanted, since);
+        }
+    }
+
+    fn begin(self, wanted: Wanted, since: u64) {
+        if self.site.with_untracked(|s| s.job.is_some()) || !self.online.get_untracked() {
+            return;
+        }
+        let (id, now) = (self.next_id(), self.guest.now_us());
+        let mut steps = Vec::new();
+        self.site.update(|site| {
+            site.job = Job::new(id, wanted, &site.dossier, since, now);
+            site.broken = None;
+            if let Some(job) = &site.job {
+                steps = job.steps().to_vec();
+            }
+        });
+        if !steps.is_empty() {
+            let device = self.tag.get_untracked();
+            self.send(&IconAsk::Read { id, device, steps });
+        }
+    }
+
+    /// Ends the read under way.
+    pub fn cancel(self) {
+        let mut id = None;
+        self.site.update(|site| {
+            if let Some(job) = &mut site.job {
+                job.cancelled = true;
+                id = Some(job.id);
+            }
+        });
+        if let Some(id) = id {
+            self.send(&IconAsk::Cancel { id });
+        }
+    }
+
+    /// Opens a saved device; its place among those that are open.
+    pub fn open(self, dossier: Dossier) -> usize {
+        self.saved.update(|saved| saved.push(Arc::new(dossier)));
+        self.saved.with_untracked(Vec::len).saturating_sub(1)
+    }
+
+    /// Devices on the line that were read since the page was opened.
+    #[must_use]
+    pub fn sites(self) -> Vec<Arc<Dossier>> {
+        KEPT.with_borrow(|kept| {
+            let sites = kept.sites.iter();
+            sites.map(|s| Arc::new(s.dossier.clone())).collect()
+        })
+    }
+
+    /// Keeps what is known for the next time the program is shown. A read under way is ended: what
+    /// comes of it would be heard by nobody.
+    fn keep(self) {
+        let site = self.site.try_update_untracked(core::mem::take);
+        let saved = self.saved.try_get_untracked().unwrap_or_default();
+        let mut site = site.unwrap_or_default();
+        if let Some(job) = site.job.take() {
+            self.send(&IconAsk::Cancel { id: job.id });
+            site.broken = Some((job.wanted.clone(), job.since()));
+        }
+        KEPT.with_borrow_mut(|kept| {
+            kept.saved = saved;
+            if !site.dossier.tag.is_empty() {
+                kept.sites.retain(|s| s.dossier.tag != site.dossier.tag);
+                kept.sites.push(site);
+            }
+        });
+    }
+}
+
+impl Site {
+    /// The connection is gone: nothing of what was asked comes back.
+    pub fn lost(&mut self) {
+        if let Some(job) = self.job.take() {
+            self.broken = Some((job.wanted.clone(), job.since()));
+            self.last = "The connection was lost.".to_owned();
+        }
+    }
+
+    /// A backend said hello. Its clock may be another one than before: then no time in here counts.
+    fn greeted(&mut self, device: Option<Device>, start_wall_ms: u64) {
+        let before = self.dossier.start_wall_ms;
+        if before != 0 && before.abs_diff(start_wall_ms) > 5000 {
+            self.dossier = Dossier::new(&self.dossier.tag, Device::None);
+            self.job = None;
+            self.broken = None;
+        }
+        self.dossier.start_wall_ms = start_wall_ms;
+        self.dossier.device = device.unwrap_or_default();
+    }
+
+    /// Takes news in; what to ask for next, if something is still missing.
+    fn hear(&mut self, news: &IconNews, next: StoredValue<u32>) -> Option<IconAsk> {
+        let job = self.job.as_mut().filter(|job| job.id == id_of(news))?;
+        if !job.hear(news, &mut self.dossier) {
+            return None;
+        }
+        let id = next.get_value();
+        if job.next(id, &self.dossier) {
+            next.set_value(id.wrapping_add(1));
+            return Some(IconAsk::Read {
+                id,
+                device: self.dossier.tag.clone(),
+                steps: job.steps().to_vec(),
+            });
+        }
+        let job = self.job.take()?;
+        let requests = crate::format::count(u64::from(job.done), "request");
+        let whole = job.is_whole(&self.dossier);
+        self.last = if job.cancelled {
+            format!("Cancelled after {requests}.")
+        } else {
+            format!("{requests} done.")
+        };
+        if !whole {
+            self.broken = Some((job.wanted.clone(), job.since()));
+        }
+        None
+    }
+}
+
+const fn id_of(news: &IconNews) -> u32 {
+    match news {
+        IconNews::Exchange { id, .. }
+        | IconNews::Progress { id, .. }
+        | IconNews::Done { id, .. } => *id,
+    }
+}
+
+const fn device_of(news: &IconNews) -> &String {
+    match news {
+        IconNews::Exchange { device, .. }
+        | IconNews::Progress { device, .. }
+        | IconNews::Done { device, .. } => device,
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "seconds since 1970")]
+fn wall_now() -> i64 {
+    (js_sys::Date::now() / 1000.0) as i64
+}
+
+/// Numbers of jobs begin somewhere, so that news about jobs of an earlier visit finds none.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "some number below two thousand million"
+)]
+fn first_id() -> u32 {
+    (js_sys::Math::random() * 2.0e9) as u32
+}
