@@ -19,6 +19,12 @@ impl Micros {
         self.0
     }
 
+    /// So many microseconds later.
+    #[must_use]
+    pub const fn plus(self, micros: u64) -> Self {
+        Self(self.0.saturating_add(micros))
+    }
+
     /// Microseconds from `earlier` to here, 0 if the clock went back.
     #[must_use]
     pub const fn since(self, earlier: Self) -> u64 {

@@ -31,6 +31,7 @@
 
 pub mod address;
 pub mod capture;
+pub mod ddc100;
 pub mod decode;
 pub mod device;
 pub mod dop;

@@ -16,6 +16,7 @@
 
 mod answer;
 mod clock;
+pub mod ddc100;
 mod demand;
 mod dop;
 mod drive;
