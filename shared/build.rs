@@ -1,8 +1,10 @@
 //! Turns `data/` into static tables: `OUT_DIR/maps.rs`, included by `map/mod.rs`, and
-//! `OUT_DIR/dop.rs`, included by `dop/mod.rs`, and `OUT_DIR/hart.rs`, included by `hart/mod.rs`.
+//! `OUT_DIR/dop.rs`, included by `dop/mod.rs`, `OUT_DIR/hart.rs`, included by `hart/mod.rs`, and
+//! `OUT_DIR/icon3000.rs`, included by `icon3000/model.rs`.
 //!
 //! A map with a mistake must not build. All problems are printed, each with file, line and the
-//! number of its rule (see `build/rules.rs`, `build/dop/rules.rs` and `build/hart/rules.rs`), before the build stops.
+//! number of its rule (see `build/rules.rs` and the `rules.rs` of the folders there), before the build
+//! stops.
 
 #[path = "build/dop/mod.rs"]
 mod dop;
@@ -10,6 +12,8 @@ mod dop;
 mod emit;
 #[path = "build/hart/mod.rs"]
 mod hart;
+#[path = "build/icon/mod.rs"]
+mod icon;
 #[path = "build/read.rs"]
 mod read;
 #[path = "build/rules.rs"]
@@ -57,6 +61,12 @@ fn generate() -> io::Result<Vec<types::Problem>> {
     if problems.is_empty() {
         problems = hart::check(&commands, &data.docs);
     }
+    let records = icon::read(Path::new("data"), &mut problems)?;
+    let device = data.devices.iter().find(|d| d.key == "icon3000");
+    let device = device.ok_or_else(|| io::Error::other("no folder data/icon3000"))?;
+    if problems.is_empty() {
+        problems = icon::check(&records, device);
+    }
     if problems.is_empty() {
         let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("OUT_DIR is not set"))?;
         fs::write(Path::new(&out).join("maps.rs"), emit::maps(&data))?;
@@ -67,6 +77,10 @@ fn generate() -> io::Result<Vec<types::Problem>> {
         fs::write(
             Path::new(&out).join("hart.rs"),
             hart::emit(&commands, &data.docs),
+        )?;
+        fs::write(
+            Path::new(&out).join("icon3000.rs"),
+            icon::emit(&records, device, &data.docs),
         )?;
     }
     Ok(problems)

@@ -82,7 +82,7 @@ fn device_tables(device: &Device, docs: &[Doc], out: &mut String) -> fmt::Result
 }
 
 /// `esd_action` → `ESD_ACTION`, `ddc100-mx` → `DDC100_MX`.
-fn screaming(key: &str) -> String {
+pub fn screaming(key: &str) -> String {
     key.replace('-', "_").to_ascii_uppercase()
 }
 
@@ -111,7 +111,11 @@ fn sets(device: &Device, prefix: &str, out: &mut String) -> fmt::Result {
             .iter()
             .filter(|m| m.bits)
             .fold(0_u32, |mask, m| mask | 1 << m.value);
-        writeln!(out, "static {prefix}_SET_{}: Set = Set {{", screaming(set))?;
+        writeln!(
+            out,
+            "pub(crate) static {prefix}_SET_{}: Set = Set {{",
+            screaming(set)
+        )?;
         writeln!(
             out,
             "    name: {set:?}, bits: {bits}, mask: {mask:#x}, members: &["
@@ -135,7 +139,10 @@ fn sets(device: &Device, prefix: &str, out: &mut String) -> fmt::Result {
 
 fn readings(device: &Device, prefix: &str, out: &mut String) -> fmt::Result {
     let count = device.readings.len();
-    writeln!(out, "static {prefix}_READINGS: [Reading; {count}] = [")?;
+    writeln!(
+        out,
+        "pub(crate) static {prefix}_READINGS: [Reading; {count}] = ["
+    )?;
     for r in &device.readings {
         let settled = name(SETTLED, r.settled);
         writeln!(
@@ -229,7 +236,7 @@ fn reading(device: &Device, prefix: &str, id: &str) -> String {
         })
 }
 
-fn doc_name<'a>(docs: &'a [Doc], key: &str) -> &'a str {
+pub fn doc_name<'a>(docs: &'a [Doc], key: &str) -> &'a str {
     docs.iter()
         .find(|d| d.key == key)
         .map_or("", |d| d.name.as_str())

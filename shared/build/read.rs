@@ -186,7 +186,7 @@ fn row(line: Line, file: usize, models: &[Model], problems: &mut Vec<Problem>) -
 }
 
 /// `0.1` is 1/10, `100/4095` is shown with two decimals.
-fn scale(cell: &str) -> Option<Scale> {
+pub fn scale(cell: &str) -> Option<Scale> {
     if let Some((num, den)) = cell.split_once('/') {
         return Some(Scale {
             num: num.parse().ok()?,

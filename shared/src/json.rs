@@ -222,6 +222,12 @@ fn write_value(out: &mut impl Write, decoded: &Decoded, field: &Field) -> fmt::R
             out.write_char(']')
         }
         Value::Stamp(seconds) => write!(out, "\"{}\"", Rfc3339(seconds)),
+        #[cfg(feature = "icon")]
+        Value::DeviceTime(_) => {
+            // A time without a zone: `2021-02-12T15:29:15`.
+            let text = field.value.to_string().replace(' ', "T");
+            write!(out, "\"{text}\"")
+        }
         Value::Raw => write!(out, r#""{}""#, decoded.raw(field)),
         Value::Text | Value::Amount { .. } | Value::Date { .. } | Value::Time { .. } => {
             write!(out, "{}", Quoted(&decoded.bare_text(field)))

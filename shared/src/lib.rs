@@ -41,6 +41,8 @@ pub mod frame;
 pub mod guess;
 #[cfg(feature = "hart")]
 pub mod hart;
+#[cfg(feature = "icon")]
+pub mod icon3000;
 pub mod image;
 pub mod json;
 pub mod map;

@@ -32,6 +32,16 @@ impl Name {
             Self::HartBit(bit) if bit.alias.is_empty() => bit.label.to_owned(),
             #[cfg(feature = "hart")]
             Self::HartBit(bit) => format!("{} (also: {})", bit.label, bit.alias),
+            #[cfg(feature = "icon")]
+            Self::File(file, number) => file.name(*number).into_owned(),
+            #[cfg(feature = "icon")]
+            Self::Entry(file, at) => format!("{} {at}", file.item),
+            #[cfg(feature = "icon")]
+            Self::Record(field, at) => field.label_of(*at).into_owned(),
+            #[cfg(feature = "icon")]
+            Self::RecordPart(field, at) => format!("{} (part)", field.label_of(*at)),
+            #[cfg(feature = "icon")]
+            Self::RecordBit(_, member) => member.label.to_owned(),
         }
     }
 
@@ -53,6 +63,10 @@ impl Name {
             Self::Hart(item, None, _) => item.unit,
             #[cfg(feature = "hart")]
             Self::HartCommand(_) | Self::HartPart(..) | Self::HartBit(_) => "",
+            #[cfg(feature = "icon")]
+            Self::Record(field, _) => field.unit,
+            #[cfg(feature = "icon")]
+            Self::File(..) | Self::Entry(..) | Self::RecordPart(..) | Self::RecordBit(..) => "",
         }
     }
 
@@ -74,6 +88,12 @@ impl Name {
             Self::Hart(item, ..) | Self::HartPart(item, _) => Some(item.source),
             #[cfg(feature = "hart")]
             Self::HartBit(bit) => Some(bit.source),
+            #[cfg(feature = "icon")]
+            Self::File(file, _) | Self::Entry(file, _) => Some(file.source),
+            #[cfg(feature = "icon")]
+            Self::Record(field, _) | Self::RecordPart(field, _) | Self::RecordBit(field, _) => {
+                Some(field.source)
+            }
         }
     }
 
@@ -93,6 +113,12 @@ impl Name {
             Self::Hart(item, ..) | Self::HartPart(item, _) => item.trust,
             #[cfg(feature = "hart")]
             Self::HartBit(bit) => bit.trust,
+            #[cfg(feature = "icon")]
+            Self::File(..) | Self::Entry(..) => Trust::Manual,
+            #[cfg(feature = "icon")]
+            Self::Record(field, _) | Self::RecordPart(field, _) | Self::RecordBit(field, _) => {
+                field.trust
+            }
         }
     }
 
@@ -111,6 +137,12 @@ impl Name {
             Self::Hart(item, ..) | Self::HartPart(item, _) => first(item.readings),
             #[cfg(feature = "hart")]
             Self::HartBit(bit) => bit.reading,
+            #[cfg(feature = "icon")]
+            Self::File(file, _) | Self::Entry(file, _) => file.reading,
+            #[cfg(feature = "icon")]
+            Self::Record(field, _) | Self::RecordPart(field, _) | Self::RecordBit(field, _) => {
+                field.reading
+            }
         }
     }
 
@@ -204,6 +236,29 @@ impl Decoded {
             Name::HartBit(bit) => {
                 below(path);
                 path.write_str(bit.key)
+            }
+            // As for registers: the path of a file does not tell which group brought it.
+            #[cfg(feature = "icon")]
+            Name::File(_, number) => write!(path, "file.{number}"),
+            #[cfg(feature = "icon")]
+            Name::Entry(_, at) => {
+                below(path);
+                write!(path, "entry[{at}]")
+            }
+            #[cfg(feature = "icon")]
+            Name::Record(field, at) | Name::RecordPart(field, at) if field.is_run() => {
+                below(path);
+                write!(path, "{}[{}]", field.key, field.from.saturating_add(at))
+            }
+            #[cfg(feature = "icon")]
+            Name::Record(field, _) | Name::RecordPart(field, _) => {
+                below(path);
+                path.write_str(field.key)
+            }
+            #[cfg(feature = "icon")]
+            Name::RecordBit(_, member) => {
+                below(path);
+                path.write_str(member.key)
             }
         };
     }
@@ -369,6 +424,17 @@ impl fmt::Display for Value {
                 write!(
                     f,
                     "{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{:02} UTC",
+                    second % 60
+                )
+            }
+            #[cfg(feature = "icon")]
+            Self::DeviceTime(seconds) => {
+                let (year, month, day, second) =
+                    civil(crate::value::Y2K.saturating_add(i64::from(seconds)));
+                let (hour, minute) = (second / 3600, (second % 3600) / 60);
+                write!(
+                    f,
+                    "{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{:02}",
                     second % 60
                 )
             }

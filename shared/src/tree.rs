@@ -7,6 +7,8 @@ use crate::address::{Address, Table};
 use crate::dop::object;
 #[cfg(feature = "hart")]
 use crate::hart::model as hart;
+#[cfg(feature = "icon")]
+use crate::icon3000::model as icon;
 use crate::map::row::{Member, Row, Source};
 use crate::place::Place;
 use crate::problem::Problem;
@@ -64,6 +66,21 @@ pub enum Name {
     /// One bit of a HART status.
     #[cfg(feature = "hart")]
     HartBit(&'static hart::Bit),
+    /// The records of a file of an ICON3000v2, and the number of the file.
+    #[cfg(feature = "icon")]
+    File(&'static icon::File, u16),
+    /// One entry of a log, from 1.
+    #[cfg(feature = "icon")]
+    Entry(&'static icon::File, u16),
+    /// A value of a file, and which of a run, from 0.
+    #[cfg(feature = "icon")]
+    Record(&'static icon::Field, u16),
+    /// A value of a file of which only some records are in the frame.
+    #[cfg(feature = "icon")]
+    RecordPart(&'static icon::Field, u16),
+    /// One bit of a value of a file.
+    #[cfg(feature = "icon")]
+    RecordBit(&'static icon::Field, &'static Member),
 }
 
 impl Name {
@@ -74,6 +91,8 @@ impl Name {
             Self::Bit(..) | Self::DopBit(..) => true,
             #[cfg(feature = "hart")]
             Self::HartBit(_) | Self::HartPart(..) => true,
+            #[cfg(feature = "icon")]
+            Self::RecordBit(..) => true,
             _ => false,
         }
     }

@@ -67,6 +67,10 @@ pub enum Value {
     },
     /// A point in time: seconds since 1970-01-01 UTC.
     Stamp(i64),
+    /// A point in time by the clock of the device, whose zone is not known: seconds since
+    /// 2000-01-01 00:00:00.
+    #[cfg(feature = "icon")]
+    DeviceTime(u32),
     /// Nominal torque or thrust: a unit, and its amount as characters at the field's place.
     Amount {
         /// Name of the unit as the manual prints it, `None` for an unknown code.
@@ -133,6 +137,10 @@ impl core::fmt::Display for Rfc3339 {
         )
     }
 }
+
+/// Seconds from 1970 to 2000.
+#[cfg(feature = "icon")]
+pub const Y2K: i64 = 946_684_800;
 
 /// Year, month, day and the second of the day of a point in time.
 ///

@@ -35,9 +35,10 @@ macro_rules! file {
     };
 }
 /// The case files with their blessed JSON lines.
-pub const FILES: [(&str, &str, &str); 7] = [
+pub const FILES: [(&str, &str, &str); 8] = [
     file!("icon3000-manual"),
     file!("icon3000-values"),
+    file!("icon3000-files"),
     file!("ddc100-guide"),
     file!("ddc100-values"),
     file!("modbus-application"),

@@ -46,10 +46,10 @@ const BOOT: &str = include_str!("web/boot.js");
 const PAGE: (&str, &str) = ("frontend", "valvescope");
 
 /// The programs that the page loads when they are wanted; binary and name are the same.
-const LATER: [&str; 4] = ["diagnostics", "network", "actuator", HART];
+const LATER: [&str; 4] = ["diagnostics", "network", "actuator", "hart"];
 
-/// The program that is compiled with HART.
-const HART: &str = "hart";
+/// The programs that are compiled with a feature, which the page does without.
+const FEATURED: [(&str, &str); 2] = [("hart", "hart"), ("actuator", "icon")];
 
 /// The code of `shared` is small.
 const SMALL: &str = "profile.web.package.shared.opt-level=\"z\"";
@@ -132,12 +132,16 @@ fn compile() -> Result<PathBuf> {
     page.args(["--bin", PAGE.0]);
     let mut later = shell::cargo(args);
     later.args(["--config", SMALL]);
-    for binary in LATER.into_iter().filter(|binary| *binary != HART) {
+    let plain = |binary: &&str| FEATURED.iter().all(|(name, _)| name != binary);
+    for binary in LATER.into_iter().filter(plain) {
         later.args(["--bin", binary]);
     }
-    let mut hart = shell::cargo(args);
-    hart.args(["--config", SMALL, "--bin", HART, "--features", HART]);
-    for command in [&mut page, &mut later, &mut hart] {
+    let featured = FEATURED.map(|(binary, feature)| {
+        let mut command = shell::cargo(args);
+        command.args(["--config", SMALL, "--bin", binary, "--features", feature]);
+        command
+    });
+    for mut command in [page, later].into_iter().chain(featured) {
         shell::run(command.env("CARGO_ENCODED_RUSTFLAGS", flags()))?;
     }
     Ok(shell::target_dir().join(WASM).join("web"))

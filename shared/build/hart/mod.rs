@@ -60,7 +60,7 @@ impl Data {
 }
 
 /// The lines of a file with their places.
-fn table<T: DeserializeOwned>(
+pub fn table<T: DeserializeOwned>(
     path: &Path,
     problems: &mut Vec<Problem>,
 ) -> io::Result<Vec<(At, T)>> {

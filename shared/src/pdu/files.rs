@@ -56,10 +56,49 @@ impl<'a> Pdu<'a, '_> {
             if !group.is_empty() {
                 self.reference(id, &mut group);
             }
-            self.records(id, self.first_record(at), &mut group);
+            self.answered(id, at, &mut group);
             at = at.saturating_add(1);
         }
         Some(())
+    }
+
+    /// The records of a response: values of the file if it is known which file it is.
+    #[cfg(feature = "icon")]
+    fn answered(&mut self, id: FieldId, at: u16, group: &mut Reader<'a>) {
+        use crate::device::Device;
+        let start = self.first_record(at);
+        let asked = |offset: usize| {
+            let at = usize::from(at).checked_mul(7)?.checked_add(offset)?;
+            self.asked.as_ref()?.word(at)
+        };
+        let (file, count) = (asked(3), asked(7));
+        if let Some(count) = count
+            && usize::from(count).saturating_mul(2) != group.left()
+            && !self.damaged
+        {
+            let bytes = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
+            let got = bytes(group.left());
+            let want = bytes(usize::from(count).saturating_mul(2));
+            self.find(Finding::NotAsAsked { got, want }, group.here());
+        }
+        if let (Device::Icon3000v2, Some(file), Some(start)) = (self.device, file, start) {
+            let known = crate::icon3000::tree::records(self.out, id, file, start, group);
+            if known {
+                let (_, place) = group.take_rest();
+                if place.len > 0 {
+                    self.out
+                        .push(Some(id), Name::Def(&defs::UNKNOWN), Value::Raw, place);
+                }
+                return;
+            }
+        }
+        self.records(id, start, group);
+    }
+
+    /// The records of a response, as words.
+    #[cfg(not(feature = "icon"))]
+    fn answered(&mut self, id: FieldId, at: u16, group: &mut Reader<'a>) {
+        self.records(id, self.first_record(at), group);
     }
 
     /// FC 21: groups of reference type, file, first record, length and records; the response is
