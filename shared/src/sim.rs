@@ -21,6 +21,8 @@ mod demand;
 mod dop;
 mod drive;
 mod files;
+#[cfg(feature = "hart")]
+pub mod hart;
 mod log;
 mod publish;
 mod setup;
