@@ -18,6 +18,7 @@ mod effect;
 pub mod export;
 pub mod frame;
 pub(crate) mod ip;
+pub mod link;
 pub mod model;
 pub mod ne107;
 mod payload;
