@@ -34,6 +34,7 @@
 //! | traffic | `traffic-bus`, `traffic-list`, `frame-row`, `pause`, `clear-traffic`, `filter-unit`, `filter-function`, `filter-problems`, `export`, `traffic-count`, `missed` |
 //! | settings | `theme-system`, `theme-light`, `theme-dark`, `download` |
 
+#[cfg(feature = "icon")]
 pub mod actuator;
 pub mod app;
 pub mod browser;

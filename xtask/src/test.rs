@@ -23,7 +23,13 @@ use std::process::Command;
 
 /// The packages whose native tests run together; always this selection, so that cargo unifies
 /// features once and compiles each dependency once. xtask shares nothing with them.
-const NATIVE: [&str; 3] = ["--workspace", "--exclude", "xtask"];
+const NATIVE: [&str; 5] = [
+    "--workspace",
+    "--exclude",
+    "xtask",
+    "--features",
+    "frontend/hart,frontend/icon",
+];
 
 /// Runs every step, stops at the first that fails, and prints the sum as the last line.
 pub fn test() -> Result {

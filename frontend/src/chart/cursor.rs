@@ -62,7 +62,10 @@ pub fn point_at(series: &Series, stop: Stop) -> Option<&Point> {
 #[must_use]
 pub fn place(chart: &Chart, stop: Stop) -> String {
     match &chart.x.kind {
-        Kind::Time => format!("{} UTC", stretch(whole(stop.from), whole(stop.to))),
+        Kind::Time => {
+            let unit = &chart.x.unit;
+            format!("{} {unit}", stretch(whole(stop.from), whole(stop.to)))
+        }
         Kind::Names(names) => {
             let at = usize::try_from(whole(stop.from)).unwrap_or(0);
             names.get(at).cloned().unwrap_or_default()

@@ -3,6 +3,7 @@
 pub mod communication;
 pub mod configuration;
 pub mod identity;
+pub mod logs;
 pub mod rows;
 pub mod tools;
 

@@ -1,5 +1,6 @@
 //! The program's screens.
 
+mod logs;
 mod registers;
 
 use std::sync::Arc;
@@ -47,6 +48,7 @@ pub fn Actuator() -> impl IntoView {
     let body = part(move || match open.get().as_str() {
         "communication" => view! { <registers::CommunicationPage/> }.into_any(),
         "configuration" => view! { <registers::ConfigurationPage/> }.into_any(),
+        "logs" => view! { <logs::LogsPage/> }.into_any(),
         "identity" => view! { <registers::IdentityPage/> }.into_any(),
         _ => view! { <p class="empty">"Choose a tab."</p> }.into_any(),
     });
@@ -78,4 +80,17 @@ fn tab(html: &mut Markup, href: &str, key: &str, label: &str, open: bool) {
 fn part(make: impl Fn() -> AnyView + Send + 'static) -> AnyView {
     let make: Box<dyn Fn() -> AnyView + Send> = Box::new(make);
     make.into_any()
+}
+
+/// Saves text as a file named after what it is of.
+fn save(what: &str, extension: &str, text: &str) {
+    let safe = |c: char| {
+        if c.is_ascii_alphanumeric() || c == '-' {
+            c
+        } else {
+            '-'
+        }
+    };
+    let what: String = what.chars().map(safe).collect();
+    crate::browser::save(&format!("valvescope-{what}.{extension}"), text);
 }

@@ -2,10 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use shared::address::Table;
 use shared::capture::Micros;
 use shared::device::Device;
+use shared::icon3000::records::groups;
+use shared::icon3000::{FileRead, Log, Records};
 use shared::image::Image;
 use shared::proto::{IconStep, Outcome, TableName};
+use shared::value::Value;
+
+use crate::chart::time::Civil;
 
 /// A record of a file, and when it was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,7 +140,7 @@ impl Dossier {
                 Some(Subject::Identity)
             }
             &[8, high, low, ..] => self.counter(u16::from_be_bytes([high, low]), response, at),
-            [0x14, ..] => self.records(request, response, at),
+            [0x14, ..] => self.file_answer(request, response, at),
             _ => self
                 .image
                 .absorb(request, response, Micros::new(at))
@@ -164,37 +170,28 @@ impl Dossier {
         Some(Subject::Diagnostic(sub))
     }
 
-    /// The response repeats neither file nor record; both are in the request. One group with as
-    /// many records as were asked for, or nothing is taken.
-    fn records(&mut self, request: &[u8], response: &[u8], at: u64) -> Option<Subject> {
-        let &[0x14, 7, 6, f0, f1, r0, r1, n0, n1] = request else {
-            return None;
-        };
-        let word = |high, low| u16::from_be_bytes([high, low]);
-        let (file, first, count) = (word(f0, f1), word(r0, r1), usize::from(word(n0, n1)));
-        let [0x14, all, length, 6, data @ ..] = response else {
-            return None;
-        };
-        let sound = data.len() == count * 2
-            && usize::from(*length) == data.len() + 1
-            && usize::from(*all) == data.len() + 2;
-        if !sound {
+    /// The response repeats neither file nor record; both are in the request. All groups fit what
+    /// was asked for, or nothing is taken.
+    fn file_answer(&mut self, request: &[u8], response: &[u8], at: u64) -> Option<Subject> {
+        let asked = FileRead::of_pdu(request)?;
+        let groups = groups(response)?;
+        let mut pairs = asked.spans().iter().zip(&groups);
+        let fits = pairs.all(|(span, words)| words.len() == usize::from(span.count));
+        if !fits || groups.len() != asked.spans().len() {
             return None;
         }
-        let kept = self.files.entry(file).or_default();
-        let first = usize::from(first);
-        if kept.len() < first + count {
-            kept.resize(first + count, None);
-        }
-        for (record, pair) in kept.iter_mut().skip(first).zip(data.chunks_exact(2)) {
-            if let [high, low] = pair {
-                *record = Some(Record {
-                    word: word(*high, *low),
-                    at,
-                });
+        for (span, words) in asked.spans().iter().zip(groups) {
+            let kept = self.files.entry(span.file).or_default();
+            let first = usize::from(span.start);
+            if kept.len() < first + words.len() {
+                kept.resize(first + words.len(), None);
             }
+            for (record, word) in kept.iter_mut().skip(first).zip(words) {
+                *record = Some(Record { word, at });
+            }
+            self.failed.remove(&Subject::File(span.file));
         }
-        Some(Subject::File(file))
+        asked.spans().first().map(|span| Subject::File(span.file))
     }
 
     /// Notes that something could not be read.
@@ -204,11 +201,52 @@ impl Dossier {
             .insert(Subject::of(step), Failure { outcome, text, at });
     }
 
-    /// The words of a file from its beginning up to the first that is missing.
+    /// The records of a file that were read at a time or later.
     #[must_use]
-    pub fn words(&self, file: u16) -> Vec<u16> {
-        let records = self.files.get(&file).map_or(&[][..], Vec::as_slice);
-        records.iter().map_while(|r| r.map(|r| r.word)).collect()
+    pub fn records(&self, file: u16, since: u64) -> Records {
+        let kept = self.files.get(&file).map_or(&[][..], Vec::as_slice);
+        let mut records = Records::default();
+        for (at, record) in (0..).zip(kept) {
+            if let Some(record) = record.filter(|r| r.at >= since) {
+                records.put(at, [record.word]);
+            }
+        }
+        records
+    }
+
+    /// A file as values; `None` if nothing of it was read, or if the manual does not describe it.
+    #[must_use]
+    pub fn log(&self, file: u16) -> Option<Log> {
+        let records = self.records(file, 0);
+        (!records.is_empty()).then(|| Log::read(file, &records))?
+    }
+
+    /// Seconds that the clock of the device is ahead of ours (UTC), by its registers; its time zone
+    /// is not told. `None` if they were not read or hold no time.
+    #[must_use]
+    pub fn clock_offset(&self) -> Option<i64> {
+        let map = self.device.map()?;
+        let row = |key| map.by_key(Table::Holding, key);
+        let date = self.image.row(row("current_date")?)?;
+        let time = self.image.row(row("current_time")?)?;
+        let (
+            Value::Date { year, month, day },
+            Value::Time {
+                hour,
+                minute,
+                second,
+            },
+        ) = (date.judged.value, time.judged.value)
+        else {
+            return None;
+        };
+        let civil = Civil {
+            year: i64::from(year),
+            month: i64::from(month),
+            day: i64::from(day),
+            second: i64::from(hour) * 3600 + i64::from(minute) * 60 + i64::from(second),
+        };
+        Some(civil.seconds() - self.wall(time.at.get()))
     }
 
     /// When the oldest of the records of a file was read.
@@ -228,7 +266,7 @@ impl Dossier {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::address::{Address, Table};
+    use shared::address::Address;
 
     fn empty() -> Dossier {
         Dossier::new("XV-101", Device::Icon3000v2)
@@ -243,15 +281,32 @@ mod tests {
             &[0x14, 6, 5, 6, 0x0D, 0xFE, 0, 0x20],
             9,
         ));
-        assert!(dossier.words(2).is_empty());
+        assert_eq!(dossier.records(2, 0).run(0, 1), None);
         assert!(dossier.absorb(
             &[0x14, 7, 6, 0, 2, 0, 0, 0, 2],
             &[0x14, 6, 5, 6, 0, 1, 0x30, 0],
             5,
         ));
-        assert_eq!(dossier.words(2), [1, 0x3000, 0x0DFE, 0x20]);
+        let words = dossier.records(2, 0).run(0, 4);
+        assert_eq!(words, Some(vec![1, 0x3000, 0x0DFE, 0x20]));
+        assert_eq!(dossier.records(2, 6).run(2, 2), Some(vec![0x0DFE, 0x20]));
+        assert_eq!(dossier.records(2, 6).get(0), None);
         assert_eq!(dossier.read_at(2), Some(5));
         assert_eq!(dossier.read_at(3), None);
+    }
+
+    /// Two groups in one answer: record 0 of file 3 and records 1 and 2 of file 4.
+    #[test]
+    fn one_answer_may_fill_several_files() {
+        let mut dossier = empty();
+        assert!(dossier.absorb(
+            &[0x14, 14, 6, 0, 3, 0, 0, 0, 1, 6, 0, 4, 0, 1, 0, 2],
+            &[0x14, 10, 3, 6, 0, 7, 5, 6, 0, 8, 0, 9],
+            5,
+        ));
+        assert_eq!(dossier.records(3, 0).get(0), Some(7));
+        assert_eq!(dossier.records(4, 0).run(1, 2), Some(vec![8, 9]));
+        assert_eq!(dossier.records(4, 0).get(0), None);
     }
 
     #[test]
@@ -288,6 +343,22 @@ mod tests {
         }
         assert_eq!(dossier.count(11), Some(Reading { count: 9, at: 20 }));
         assert!(dossier.failed.is_empty(), "an answer mends a failure");
+    }
+
+    /// HR 3023 to 3026: 0xDDMM, 0xYYYY, 0x00HH, 0xMMSS (notes 2 and 3); 2025-12-06 05:46:40 UTC is
+    /// second 1 765 000 000.
+    #[test]
+    fn the_clock_of_the_device_is_compared_with_ours() {
+        let mut dossier = empty();
+        assert_eq!(dossier.clock_offset(), None);
+        dossier.start_wall_ms = 1_765_000_000_000;
+        let response = [3, 8, 0x06, 0x12, 0x20, 0x25, 0x00, 0x06, 0x46, 0x52];
+        assert!(dossier.absorb(&[3, 0x0B, 0xCF, 0, 4], &response, 2_000_000));
+        assert_eq!(
+            dossier.clock_offset(),
+            Some(3610),
+            "an hour and 12 s less 2 s"
+        );
     }
 
     #[test]

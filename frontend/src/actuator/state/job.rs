@@ -225,7 +225,7 @@ mod tests {
         );
         assert!(job.hear(&done(1, 0), &mut dossier));
         assert!(job.is_whole(&dossier) && !job.next(3, &dossier));
-        assert_eq!(dossier.words(2).len(), 7);
+        assert_eq!(dossier.records(2, 0).len(), 7);
         assert_eq!((job.done, job.total), (3, 3));
     }
 

@@ -2,4 +2,5 @@
 
 pub mod dossier;
 pub mod job;
+pub mod logs;
 pub mod wanted;

@@ -1,6 +1,7 @@
 //! What a screen needs, and what of it is still to be read.
 
 use shared::address::Table;
+use shared::icon3000::Span;
 use shared::map::plan::plan;
 use shared::map::row::Row;
 use shared::proto::{Block, IconStep, MAX_ICON_STEPS};
@@ -10,34 +11,9 @@ use super::dossier::{Dossier, Subject};
 /// Sub-functions of FC 08 that read a counter, in the order of the manual's table 19.
 pub const COUNTERS: [u16; 6] = [11, 12, 13, 14, 17, 18];
 
-/// Logs as files, with the records of their head and of an entry (sections 8.11.1 to 8.11.10).
-const LOGS: [(u16, u16, u16); 6] = [
-    (2, 1, 3),
-    (3, 1, 3),
-    (4, 1, 32),
-    (5000, 4, 5),
-    (5100, 5, 6),
-    (5200, 5, 6),
-];
-
-/// Records of a file that has as many as its kind says; `None` for a log, whose head says it.
-#[must_use]
-pub const fn fixed(file: u16) -> Option<u16> {
-    match file {
-        1000..=1100 | 2000..=2100 => Some(108),
-        3000..=3016 => Some(118),
-        3500..=3516 => Some(110),
-        5300..=5304 => Some(32),
-        _ => None,
-    }
-}
-
-/// Records of file 5 that are asked for; the manual describes neither its length nor its content
-/// (reading E69).
-pub const LIMITS: u16 = 100;
-
-/// The last record that a file can have.
-const RECORDS: u32 = 10_000;
+/// The file whose records the manual does not describe, and how many of them are asked for: as many
+/// as one answer holds (readings E69, E80).
+pub const LIMITS: (u16, u16) = (5, 121);
 
 /// Things to be read, all of them or only those that are missing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -134,45 +110,22 @@ fn is_old(dossier: &Dossier, block: Block, since: u64) -> bool {
     })
 }
 
-/// Records that a file has as far as is known: those of its kind, or of the log that its head counts.
-#[must_use]
-pub fn length(dossier: &Dossier, file: u16, since: u64) -> Option<u16> {
-    if let Some(records) = fixed(file) {
-        return Some(records);
-    }
-    if file == 5 {
-        return Some(LIMITS);
-    }
-    let (_, head, entry) = LOGS.into_iter().find(|log| log.0 == file)?;
-    let count = dossier.files.get(&file)?.first().copied().flatten()?;
-    if count.at < since {
-        return None;
-    }
-    let records = u32::from(entry).saturating_mul(u32::from(count.word));
-    let all = records.saturating_add(u32::from(head)).min(RECORDS);
-    u16::try_from(all).ok()
-}
-
-/// The part of a file that is to be read, as one step.
-fn rest(dossier: &Dossier, file: u16, since: u64) -> Option<IconStep> {
-    let records = dossier.files.get(&file).map_or(&[][..], Vec::as_slice);
-    let head = LOGS.into_iter().find(|log| log.0 == file).map(|log| log.1);
-    let length = match (length(dossier, file, since), head) {
-        (Some(length), _) => length,
-        (None, Some(head)) => head,
-        (None, None) => return None,
+/// The parts of a file that are to be read: first its head, then what the head announces.
+fn rest(dossier: &Dossier, file: u16, since: u64) -> Vec<IconStep> {
+    let fresh = dossier.records(file, since);
+    let spans = if file == LIMITS.0 {
+        let missing = (0..LIMITS.1).find(|at| fresh.get(*at).is_none());
+        let count = |start| LIMITS.1.saturating_sub(start);
+        missing.map_or_else(Vec::new, |start| vec![Span::new(file, start, count(start))])
+    } else {
+        fresh.missing(file)
     };
-    let is_old = |at: &u16| {
-        let record = records.get(usize::from(*at)).copied().flatten();
-        record.is_none_or(|r| r.at < since)
+    let step = |span: Span| IconStep::File {
+        file: span.file,
+        start: span.start,
+        count: span.count,
     };
-    let start = (0..length).find(is_old)?;
-    let last = (start..length).rev().find(is_old)?;
-    Some(IconStep::File {
-        file,
-        start,
-        count: last - start + 1,
-    })
+    spans.into_iter().map(step).collect()
 }
 
 #[cfg(test)]

@@ -1,0 +1,383 @@
+//! A log as a table: sorted, filtered, exported.
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+use core::cmp::Ordering;
+
+use shared::icon3000::model::{Field, File, Kind};
+use shared::icon3000::{Item, Log};
+use shared::value::{Quality, Value};
+
+use super::dossier::Dossier;
+use crate::chart::table::quote;
+use crate::chart::ticks::ordered;
+use crate::chart::time::stamp;
+use crate::state::json::quoted;
+
+/// Seconds from 1970 to 2000, where the clock of the device begins (reading E73).
+pub const Y2K: i64 = 946_684_800;
+
+/// Logs that the screen shows, by file.
+pub const LOGS: [u16; 5] = [2, 3, 4, 5000, 5];
+
+/// A cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// As shown, without unit.
+    pub text: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its words in hexadecimal.
+    pub raw: String,
+    /// How far to rely on it.
+    pub quality: Quality,
+    /// The number by which it is sorted: a code, a count, seconds.
+    pub number: Option<i64>,
+}
+
+/// An entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its number, 1 is the latest; the record itself in a file that is not described.
+    pub number: u16,
+    /// When, in seconds since 1970 by the clock of the device.
+    pub time: Option<i64>,
+    /// Its values in the order of the columns; `None` where a record was not read.
+    pub cells: Vec<Option<Cell>>,
+}
+
+/// A log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Number of the file.
+    pub file: u16,
+    /// Its name.
+    pub name: String,
+    /// What an entry is called.
+    pub item: &'static str,
+    /// Where the manual describes it.
+    pub source: String,
+    /// A remark on the file.
+    pub note: &'static str,
+    /// Values of the head besides the number of entries: name and text.
+    pub head: Vec<(String, String)>,
+    /// Its columns.
+    pub columns: Vec<&'static Field>,
+    /// Its entries.
+    pub rows: Vec<Row>,
+    /// Entries that the device has, as far as it told.
+    pub stored: Option<u16>,
+    /// What is wrong with it.
+    pub problems: Vec<String>,
+}
+
+impl Table {
+    /// A log of a device, with nothing in it if nothing was read.
+    #[must_use]
+    pub fn of(dossier: &Dossier, file: u16) -> Self {
+        let Some(described) = File::of(file) else {
+            return Self::default();
+        };
+        let mut table = Self {
+            file,
+            name: described.name(file).into_owned(),
+            item: described.item,
+            source: described.source.to_string(),
+            note: described.note,
+            ..Self::default()
+        };
+        let Some(layout) = described.layout else {
+            table.raw(dossier);
+            return table;
+        };
+        let shown = |f: &&Field| f.kind != Kind::Unused && f.key != "time";
+        table.columns = layout.entry.iter().filter(shown).collect();
+        let Some(log) = dossier.log(file) else {
+            return table;
+        };
+        table.stored = log.stored;
+        table.head = head(&log);
+        let problem =
+            |p: &shared::icon3000::read::RecordProblem| format!("record {}: {}", p.record, p.text);
+        table.problems = log.problems.iter().map(problem).collect();
+        // Entries beyond what the head announces are left from before.
+        let valid = |number: u16| log.stored.is_none_or(|stored| number <= stored);
+        for entry in log
+            .entries
+            .iter()
+            .filter(|e| valid(e.number) && !e.is_unread())
+        {
+            let cells = table.columns.iter().map(|f| entry.get(f.key).map(cell));
+            table.rows.push(Row {
+                number: entry.number,
+                time: entry.time().map(|t| Y2K + i64::from(t)),
+                cells: cells.collect(),
+            });
+        }
+        table
+    }
+
+    /// Reading E69: nothing is known about the file, so each record is a row of its own.
+    fn raw(&mut self, dossier: &Dossier) {
+        for (record, word) in dossier.records(self.file, 0).iter() {
+            let text = |text: String| {
+                Some(Cell {
+                    text,
+                    unit: "",
+                    raw: format!("{word:04X}"),
+                    quality: Quality::Disputed,
+                    number: Some(i64::from(word)),
+                })
+            };
+            let signed = word.cast_signed();
+            let bytes = word.to_be_bytes();
+            let letter = |b: u8| {
+                if b.is_ascii_graphic() {
+                    char::from(b)
+                } else {
+                    '·'
+                }
+            };
+            self.rows.push(Row {
+                number: record,
+                time: None,
+                cells: vec![
+                    text(format!("{word:04X}")),
+                    text(word.to_string()),
+                    text(signed.to_string()),
+                    text(bytes.map(letter).iter().collect()),
+                ],
+            });
+        }
+    }
+
+    /// Names of the columns besides number and time.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        if self.columns.is_empty() {
+            let names = ["Hexadecimal", "Unsigned", "Signed", "Characters"];
+            return names.map(str::to_owned).to_vec();
+        }
+        let name = |f: &&Field| match f.unit {
+            "" => f.label.to_owned(),
+            unit => format!("{}, {unit}", f.label),
+        };
+        self.columns.iter().map(name).collect()
+    }
+
+    /// True if its entries have times.
+    #[must_use]
+    pub fn has_times(&self) -> bool {
+        !self.columns.is_empty()
+    }
+
+    /// Places of the rows that pass a filter, in its order.
+    #[must_use]
+    pub fn matching(&self, filter: &Filter) -> Vec<usize> {
+        let wanted = filter.text.trim().to_lowercase();
+        let mut found: Vec<usize> = self
+            .rows
+            .iter()
+            .enumerate()
+            .filter(|(_, row)| row.passes(&wanted, filter.code, &self.columns))
+            .map(|(at, _)| at)
+            .collect();
+        let order = ordered(found.len(), &|a, b| {
+            let (a, b) = (&self.rows[found[a]], &self.rows[found[b]]);
+            let order = a.compare(b, filter.column);
+            let order = if filter.down { order.reverse() } else { order };
+            order == Ordering::Less
+        });
+        found = order.into_iter().map(|at| found[at]).collect();
+        found
+    }
+
+    /// Codes that a column of names can have, for a filter: that of the alarms, warnings, sources.
+    #[must_use]
+    pub fn codes(&self) -> Option<(usize, &'static Field)> {
+        // The last is what happened: alarm, warning, device, source.
+        let mut named = self.columns.iter().enumerate();
+        named
+            .rfind(|(_, f)| f.kind == Kind::Enum)
+            .map(|(at, f)| (at, *f))
+    }
+}
+
+impl Row {
+    fn passes(&self, wanted: &str, code: Option<i64>, columns: &[&'static Field]) -> bool {
+        let cells = self.cells.iter().flatten();
+        let named = wanted.is_empty()
+            || self.number.to_string() == wanted
+            || self.time.is_some_and(|t| stamp(t).contains(wanted))
+            || cells
+                .clone()
+                .any(|c| c.text.to_lowercase().contains(wanted));
+        let coded = code.is_none_or(|code| {
+            let last = columns.iter().rposition(|f| f.kind == Kind::Enum);
+            let cell = last.and_then(|at| self.cells.get(at)?.as_ref());
+            cell.is_some_and(|c| c.number == Some(code))
+        });
+        named && coded
+    }
+
+    fn compare(&self, other: &Self, column: Column) -> Ordering {
+        let by = match column {
+            Column::Number => Ordering::Equal,
+            Column::Time => self.time.cmp(&other.time),
+            Column::Value(at) => {
+                let cell = |row: &Self| row.cells.get(at).cloned().flatten();
+                match (cell(self), cell(other)) {
+                    (Some(a), Some(b)) => match (a.number, b.number) {
+                        (Some(a), Some(b)) => a.cmp(&b),
+                        _ => a.text.cmp(&b.text),
+                    },
+                    (a, b) => a.is_some().cmp(&b.is_some()).reverse(),
+                }
+            }
+        };
+        by.then(self.number.cmp(&other.number))
+    }
+}
+
+/// The values of a head that say more than how many entries there are.
+fn head(log: &Log) -> Vec<(String, String)> {
+    let items = log.head.iter().flatten();
+    items
+        .filter(|item| item.field.key != "count")
+        .map(|item| (item.label().into_owned(), item.text_with_unit()))
+        .collect()
+}
+
+fn cell(item: &Item) -> Cell {
+    Cell {
+        text: item.text(),
+        unit: item.field.unit,
+        raw: item.raw(),
+        quality: item.quality,
+        number: match item.value {
+            Value::Code { raw, .. } | Value::Flags { raw, .. } => Some(i64::from(raw)),
+            _ => item.number(),
+        },
+    }
+}
+
+/// A column that a log can be sorted by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Column {
+    /// The number of the entry.
+    #[default]
+    Number,
+    /// The time.
+    Time,
+    /// A value, by its place.
+    Value(usize),
+}
+
+/// What is looked for, and in which order.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// Text of a cell, a number or a part of a time.
+    pub text: String,
+    /// A code of the column that says what happened.
+    pub code: Option<i64>,
+    /// The column to sort by.
+    pub column: Column,
+    /// True for the largest first.
+    pub down: bool,
+}
+
+impl Filter {
+    /// Sorts by a column, or the other way round if it is sorted by that already.
+    pub fn sort(&mut self, column: Column) {
+        self.down = self.column == column && !self.down;
+        self.column = column;
+    }
+}
+
+/// A time of the device for programs: `2024-02-29T00:00:00`, without a zone, because none is told.
+fn iso(seconds: i64) -> String {
+    stamp(seconds).replace(' ', "T")
+}
+
+/// Rows as comma-separated values with a head line. `offset` is what the clock of the device is
+/// ahead of UTC.
+#[must_use]
+pub fn csv(table: &Table, rows: &[usize], offset: Option<i64>) -> String {
+    let mut out = String::from(if table.has_times() {
+        "number,device_time,utc"
+    } else {
+        "record"
+    });
+    for name in table.names() {
+        out.push(',');
+        quote(&mut out, &name);
+    }
+    out.push_str(",raw\n");
+    for row in rows.iter().filter_map(|at| table.rows.get(*at)) {
+        out.push_str(&row.number.to_string());
+        if table.has_times() {
+            out.push(',');
+            out.push_str(&row.time.map(iso).unwrap_or_default());
+            out.push(',');
+            if let (Some(time), Some(offset)) = (row.time, offset) {
+                out.push_str(&format!("{}Z", iso(time - offset)));
+            }
+        }
+        for cell in &row.cells {
+            out.push(',');
+            quote(&mut out, cell.as_ref().map_or("", |c| &c.text));
+        }
+        out.push(',');
+        quote(&mut out, &raw(table, row));
+        out.push('\n');
+    }
+    out
+}
+
+/// The words of the cells of a row; those of a file that is not described are the same in each.
+fn raw(table: &Table, row: &Row) -> String {
+    let cells = row.cells.iter().flatten().map(|c| c.raw.as_str());
+    if table.columns.is_empty() {
+        return cells.take(1).collect();
+    }
+    cells.collect::<Vec<_>>().join(" ")
+}
+
+/// Rows as a JSON list, one object a line.
+#[must_use]
+pub fn json(table: &Table, rows: &[usize], offset: Option<i64>) -> String {
+    let mut out = String::from("[");
+    let rows = rows.iter().filter_map(|at| table.rows.get(*at));
+    for (n, row) in rows.enumerate() {
+        out.push_str(if n == 0 { "\n" } else { ",\n" });
+        out.push_str(&format!(" {{\"number\":{}", row.number));
+        let time = |out: &mut String, name: &str, time: Option<String>| {
+            out.push_str(&format!(",\"{name}\":"));
+            match time {
+                Some(time) => quoted(out, &time),
+                None => out.push_str("null"),
+            }
+        };
+        if table.has_times() {
+            time(&mut out, "device_time", row.time.map(iso));
+            let utc = row
+                .time
+                .zip(offset)
+                .map(|(t, o)| format!("{}Z", iso(t - o)));
+            time(&mut out, "utc", utc);
+        }
+        let keys = ["hex", "unsigned", "signed", "characters"];
+        for (at, cell) in row.cells.iter().enumerate() {
+            let key = table.columns.get(at).map_or(keys[at.min(3)], |f| f.key);
+            time(&mut out, key, cell.as_ref().map(|c| c.text.clone()));
+            if let Some(number) = cell.as_ref().and_then(|c| c.number) {
+                out.push_str(&format!(",\"{key}_raw\":{number}"));
+            }
+        }
+        time(&mut out, "raw", Some(raw(table, row)));
+        out.push('}');
+    }
+    out.push_str("\n]\n");
+    out
+}
