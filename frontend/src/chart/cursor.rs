@@ -26,7 +26,7 @@ impl Stop {
 /// All places that have a point, from left to right.
 #[must_use]
 pub fn stops(chart: &Chart) -> Vec<Stop> {
-    let points = chart.series.iter().flat_map(|s| &s.points);
+    let points = chart.lines().flat_map(|s| &s.points);
     let all: Vec<_> = points
         .map(|p| Stop {
             from: p.from,
@@ -199,7 +199,7 @@ pub fn readout(html: &mut Markup, chart: &Chart, view: View) {
         return;
     };
     html.node("b", "readout-place", &place(chart, stop));
-    for series in &chart.series {
+    for series in chart.lines() {
         let point = point_at(series, stop);
         html.open(
             "span",

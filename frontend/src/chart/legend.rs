@@ -28,8 +28,8 @@ impl Names {
     #[must_use]
     pub fn of(chart: &Chart, width: f64) -> Self {
         let lines = chart.series.iter().all(|s| s.shape != Shape::Bar);
-        let widths = chart.series.iter().map(|s| text_width(&s.label));
-        match chart.series.len() {
+        let widths = chart.lines().map(|s| text_width(&s.label));
+        match chart.lines().count() {
             0 | 1 => Self::None,
             n if n <= DIRECT && lines && width >= WIDE => {
                 Self::Right(widths.fold(0.0, f64::max) + 12.0)

@@ -105,6 +105,8 @@ pub enum Shape {
     Step,
     /// A bar over the extent of each point.
     Bar,
+    /// An upright line at each point, which has no value of its own: a limit of the x axis.
+    Rule,
 }
 
 /// How a series is told from the others.
@@ -116,6 +118,8 @@ pub enum Stroke {
     Dashed,
     /// Bars are outlined.
     Dotted,
+    /// A second reference beside a dashed one; not for bars.
+    DashDot,
     /// Accompanies another; bars are grey.
     Thin,
 }
@@ -128,6 +132,7 @@ impl Stroke {
             Self::Solid => "solid",
             Self::Dashed => "dashed",
             Self::Dotted => "dotted",
+            Self::DashDot => "dashdot",
             Self::Thin => "thin",
         }
     }
@@ -202,6 +207,11 @@ impl Chart {
             let (low, high) = extent.unwrap_or((p.from, p.to));
             Some((low.min(p.from), high.max(p.to)))
         })
+    }
+
+    /// The series that have values: all but rules.
+    pub fn lines(&self) -> impl Iterator<Item = &Series> + Clone {
+        self.series.iter().filter(|s| s.shape != Shape::Rule)
     }
 
     /// True if there is nothing to draw.

@@ -3,7 +3,7 @@
 mod marks;
 mod pen;
 
-use marks::{bars, cursor, names};
+use marks::{bars, cursor, names, rules};
 use pen::{Pen, n};
 
 use super::legend::{Names, text_width};
@@ -201,7 +201,7 @@ pub fn draw(chart: &Chart, size: Size, view: View, look: Look) -> String {
         }
     }
     bars(&mut pen, chart, &frame);
-    for series in chart.series.iter().filter(|s| s.shape != Shape::Bar) {
+    for series in chart.lines().filter(|s| s.shape != Shape::Bar) {
         let class = format!("series {}", series.stroke.class());
         pen.path(
             &class,
@@ -215,6 +215,7 @@ pub fn draw(chart: &Chart, size: Size, view: View, look: Look) -> String {
         }
     }
     pen.html.close("g");
+    rules(&mut pen, chart, &frame);
     names(&mut pen, chart, &frame);
     if look == Look::Page {
         cursor(&mut pen, chart, &frame, view);
@@ -279,7 +280,10 @@ fn axes(pen: &mut Pen, chart: &Chart, frame: &Frame) {
     pen.text("caption", (0.0, 12.0), &chart.y.caption(), &[]);
     let low = bottom + 2.0 * LINE + 6.0;
     let words = match chart.x.kind {
-        Kind::Time => format!("{} UTC", time::stretch(whole(frame.x.0), whole(frame.x.1))),
+        Kind::Time => {
+            let stretch = time::stretch(whole(frame.x.0), whole(frame.x.1));
+            format!("{stretch} {}", chart.x.unit)
+        }
         _ => chart.x.caption(),
     };
     pen.text("caption end", (right, low), &words, &[]);

@@ -8,7 +8,7 @@ use crate::markup::Markup;
 #[must_use]
 pub fn head(chart: &Chart) -> Vec<String> {
     let mut head = vec![chart.x.label.clone()];
-    for series in &chart.series {
+    for series in chart.lines() {
         let unit = &chart.y.unit;
         head.push(if unit.is_empty() {
             series.label.clone()
@@ -32,7 +32,7 @@ fn has_notes(chart: &Chart, key: &str) -> bool {
 pub fn rows(chart: &Chart) -> Vec<Vec<String>> {
     let row = |stop| {
         let mut cells = vec![place(chart, stop)];
-        for series in &chart.series {
+        for series in chart.lines() {
             let point = point_at(series, stop).filter(|p| p.y.is_some());
             cells.push(point.map(|p| p.text.clone()).unwrap_or_default());
             if has_notes(chart, &series.key) {

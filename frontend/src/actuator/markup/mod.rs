@@ -2,6 +2,7 @@
 
 pub mod communication;
 pub mod configuration;
+pub mod curves;
 pub mod identity;
 pub mod logs;
 pub mod rows;

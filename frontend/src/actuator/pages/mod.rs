@@ -1,5 +1,6 @@
 //! The program's screens.
 
+mod curves;
 mod logs;
 mod registers;
 
@@ -8,6 +9,8 @@ use std::sync::Arc;
 use leptos::prelude::*;
 
 use super::store::Store;
+use crate::chart::view::ChartView;
+use crate::chart::{Axis, Chart};
 use crate::components::drawn::{Draw, Drawn};
 use crate::erased::memo;
 use crate::markup::Markup;
@@ -48,6 +51,7 @@ pub fn Actuator() -> impl IntoView {
     let body = part(move || match open.get().as_str() {
         "communication" => view! { <registers::CommunicationPage/> }.into_any(),
         "configuration" => view! { <registers::ConfigurationPage/> }.into_any(),
+        "curves" => view! { <curves::CurvesPage/> }.into_any(),
         "logs" => view! { <logs::LogsPage/> }.into_any(),
         "identity" => view! { <registers::IdentityPage/> }.into_any(),
         _ => view! { <p class="empty">"Choose a tab."</p> }.into_any(),
@@ -80,6 +84,36 @@ fn tab(html: &mut Markup, href: &str, key: &str, label: &str, open: bool) {
 fn part(make: impl Fn() -> AnyView + Send + 'static) -> AnyView {
     let make: Box<dyn Fn() -> AnyView + Send> = Box::new(make);
     make.into_any()
+}
+
+/// Charts below each other.
+fn charts(charts: Memo<Vec<Chart>>) -> AnyView {
+    // As text, for which there are memos already.
+    let count = memo(move || charts.with(Vec::len).to_string());
+    part(move || {
+        let all: Vec<AnyView> = (0..count.get().parse::<usize>().unwrap_or(0))
+            .map(|at| {
+                let chart = Signal::derive(move || {
+                    charts.with(|all| all.get(at).cloned().unwrap_or_else(none))
+                });
+                view! { <ChartView chart=chart/> }.into_any()
+            })
+            .collect();
+        all.into_any()
+    })
+}
+
+/// What stands where a chart was, until the list is drawn anew.
+fn none() -> Chart {
+    Chart {
+        key: String::new(),
+        title: String::new(),
+        x: Axis::number("", ""),
+        y: Axis::number("", ""),
+        series: Vec::new(),
+        bands: Vec::new(),
+        notes: Vec::new(),
+    }
 }
 
 /// Saves text as a file named after what it is of.

@@ -82,13 +82,39 @@ pub(super) fn names(pen: &mut Pen, chart: &Chart, frame: &Frame) {
             }
         }
         Names::Above(places) => {
-            for (series, (row, left)) in chart.series.iter().zip(places) {
+            for (series, (row, left)) in chart.lines().zip(places) {
                 let row = u32::try_from(*row).map_or(0.0, f64::from);
                 let y = 12.0 + LINE * (row + 1.0);
                 swatch(pen, chart, series, (*left, y - 4.0));
                 let at = (left + 32.0, y);
                 pen.text("name", at, &series.label, &[("data-name", &series.key)]);
             }
+        }
+    }
+}
+
+/// Upright lines over the whole height, each with its name at the top.
+pub(super) fn rules(pen: &mut Pen, chart: &Chart, frame: &Frame) {
+    let rules = chart.series.iter().filter(|s| s.shape == Shape::Rule);
+    for (row, series) in (0_u32..).zip(rules) {
+        let class = format!("series {}", series.stroke.class());
+        for point in &series.points {
+            let place = point.middle();
+            if place < frame.x.0 || place > frame.x.1 {
+                continue;
+            }
+            let x = frame.px(place);
+            let d = format!("M{} {}V{}", n(x), n(frame.top), n(frame.bottom()));
+            pen.path(&class, &d, &[("data-series", &series.key)]);
+            // Beside the line, on the side that has room, and none over another.
+            let y = frame.top + 11.0 + LINE * f64::from(row);
+            let fits = x + 5.0 + text_width(&series.label) < frame.left + frame.width;
+            let (class, x) = if fits {
+                ("name", x + 5.0)
+            } else {
+                ("name end", x - 5.0)
+            };
+            pen.text(class, (x, y), &series.label, &[("data-name", &series.key)]);
         }
     }
 }

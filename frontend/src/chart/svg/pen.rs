@@ -69,6 +69,7 @@ fn printed(class: &str) -> &'static [(&'static str, &'static str)] {
         "solid" => &[("stroke-width", "2")],
         "dashed" => &[("stroke-width", "1.5"), ("stroke-dasharray", "6 4")],
         "dotted" => &[("stroke-width", "1.5"), ("stroke-dasharray", "1.5 3")],
+        "dashdot" => &[("stroke-width", "1.5"), ("stroke-dasharray", "8 3 1.5 3")],
         "thin" => &[("stroke-width", "0.8")],
         "bar-solid" => &[("fill", "#444"), ("stroke", "#000")],
         "bar-thin" => &[("fill", "#bbb"), ("stroke", "#000")],

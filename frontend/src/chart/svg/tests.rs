@@ -1,5 +1,6 @@
 use super::*;
-use crate::chart::sample::{bars, torque};
+use crate::chart::Stroke;
+use crate::chart::sample::{bars, line, torque};
 
 const SIZE: Size = Size {
     width: 800.0,
@@ -181,4 +182,28 @@ fn pixels_are_short() {
     assert_eq!(n(-3.25), "-3.3");
     assert_eq!(exact(1_795_132_800.25), "1795132800.25");
     assert_eq!((exact(-0.5), exact(100.0)), ("-0.5".into(), "100".into()));
+}
+
+/// A limit of the x axis is a line over the whole height, and no value anywhere.
+#[test]
+fn rules_stand_upright() {
+    let mut chart = torque();
+    let mut rule = line("limit", Stroke::Dotted, &[(25.0, 0.0)]);
+    rule.shape = Shape::Rule;
+    rule.points[0].y = None;
+    chart.series.push(rule);
+    let svg = draw(&chart, SIZE, View::default(), Look::Page);
+    let frame = Frame::of(&chart, SIZE, View::default());
+    let d = all(&svg, "data-series=\"limit\"", "d")[0];
+    let wanted = format!(
+        "M{} {}V{}",
+        n(frame.px(25.0)),
+        n(frame.top),
+        n(frame.top + frame.height)
+    );
+    assert_eq!(d, wanted);
+    assert!(svg.contains("data-name=\"limit\""));
+    assert_eq!(frame.y, Frame::of(&torque(), SIZE, View::default()).y);
+    assert_eq!(crate::chart::cursor::stops(&chart).len(), 3);
+    assert_eq!(crate::chart::table::head(&chart).len(), 3);
 }
