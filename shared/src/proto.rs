@@ -34,6 +34,36 @@ pub const MAX_MESSAGE: usize = 64 * 1024;
 /// Fastest period of a watch, in milliseconds.
 pub const MIN_PERIOD_MS: u32 = 100;
 
+/// News for a program that the page hosts.
+pub trait News {
+    /// The text that travels: JSON that begins with one of [`PROGRAM_PREFIXES`].
+    fn into_text(self) -> String;
+}
+
+impl News for DopNews {
+    fn into_text(self) -> String {
+        self.to_text()
+    }
+}
+
+impl News for HartNews {
+    fn into_text(self) -> String {
+        self.to_text()
+    }
+}
+
+impl News for DdcNews {
+    fn into_text(self) -> String {
+        self.to_text()
+    }
+}
+
+impl News for IconNews {
+    fn into_text(self) -> String {
+        self.to_text()
+    }
+}
+
 /// A table, as it travels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

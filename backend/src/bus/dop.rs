@@ -8,10 +8,9 @@ mod job;
 mod tests;
 
 use super::gate::{DopPermit, Gate};
-use super::{ClientId, Report};
+use super::{ClientId, Outlet, Report};
 use crate::config::DeviceConfig;
 use job::Job;
-pub use job::Outlet;
 use shared::address::Address;
 use shared::capture::Micros;
 use shared::dop::handshake::{Handshake, Next, Position, Reply, Setup, Why};

@@ -8,6 +8,7 @@ mod dop;
 pub mod gate;
 pub mod master;
 mod open;
+mod outlet;
 pub mod recorder;
 mod schedule;
 pub mod tap;
@@ -17,8 +18,8 @@ mod unit;
 pub(crate) mod words;
 
 pub use actor::start;
-pub use dop::Outlet;
 pub use open::Plug;
+pub use outlet::Outlet;
 
 use shared::encode::Read;
 use shared::proto::{DopAsk, Outcome};

@@ -1,55 +1,15 @@
 //! What a page asked for on one device: objects, or a log.
 
-use super::super::ClientId;
-use axum::extract::ws::Utf8Bytes;
+use super::super::{ClientId, Outlet};
 use shared::dop::handshake::{Handshake, Why};
 use shared::dop::log::{LogRun, Stop};
 use shared::dop::{ObjectRead, Profile, Request};
 use shared::proto::{DopNews, LogFrom, Outcome};
 use shared::render::hex;
 use std::collections::VecDeque;
-use tokio::sync::mpsc;
-
-/// Room that a page must have before the next object is read for it: its object or failure, a
-/// profile, the end of a log, the end of the job.
-const ROOM: usize = 8;
 
 /// After so many objects in a row without any answer the others are given up.
 const SILENT: u8 = 2;
-
-/// The way to a page. It holds so much and no more; who takes nothing is waited for.
-#[derive(Clone, Debug)]
-pub struct Outlet(mpsc::Sender<Utf8Bytes>);
-
-impl Outlet {
-    /// Messages that wait for one page.
-    pub const SIZE: usize = 64;
-
-    /// The way to a page.
-    #[must_use]
-    pub const fn new(sender: mpsc::Sender<Utf8Bytes>) -> Self {
-        Self(sender)
-    }
-
-    /// Sends what must not be lost. There is room, for it was asked for before; if the page is
-    /// gone, nobody needs it.
-    pub fn send(&self, news: DopNews) {
-        let _gone = self.0.try_send(news.to_text().into());
-    }
-
-    /// Sends what will be said again soon, if there is room.
-    pub fn say(&self, news: DopNews) {
-        if self.has_room() {
-            self.send(news);
-        }
-    }
-
-    /// True if there is room for all that comes of one object, or if nobody listens any more.
-    #[must_use]
-    pub fn has_room(&self) -> bool {
-        self.0.is_closed() || self.0.capacity() >= ROOM
-    }
-}
 
 /// What is to be read.
 enum Kind {
