@@ -9,20 +9,35 @@ use shared::frame::Framing;
 
 use crate::format::within;
 use crate::state::findings::Findings;
-use crate::state::load::{Loader, Rescan};
+use crate::state::load::Loader;
 use crate::state::samples::Sample;
 use crate::state::selection::Selection;
 use crate::state::work::Work;
 use crate::task::{SLICE_MS, Ticket, Turn, now_ms, pause, promise};
-
-/// Inputs up to this size are kept as they came, so that another framing reads them anew.
-const KEPT: usize = 4 * 1024 * 1024;
 
 /// Bytes taken in at once.
 const PIECE: usize = 128 * 1024;
 
 /// Bytes asked from a file at once.
 const READ: f64 = 1024.0 * 1024.0;
+
+/// Framings that a program of its own decodes: key and name.
+pub const FOREIGN: &[(&str, &str)] = if cfg!(feature = "hart") {
+    &[]
+} else {
+    &[("hart", "HART"), ("hart-ip", "HART-IP")]
+};
+
+/// An input as it came, so that it can be read anew or handed on.
+#[derive(Clone, Debug)]
+pub enum Input {
+    /// Bytes in memory.
+    Bytes(Arc<Vec<u8>>),
+    /// A file, read piece by piece.
+    File(web_sys::File),
+    /// A sample that another program has.
+    Sample(&'static str),
+}
 
 /// Long work under way.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +88,9 @@ pub struct DecodeStore {
     pub collapsed: RwSignal<bool>,
     /// Key of the open sample.
     pub sample: RwSignal<Option<&'static str>>,
-    raw: StoredValue<Option<Arc<Vec<u8>>>>,
+    /// Set while a program of its own decodes: the framing that the user chose, empty for automatic.
+    pub hosted: RwSignal<Option<&'static str>>,
+    input: StoredValue<Option<(String, Input)>, LocalStorage>,
     turn: StoredValue<Turn, LocalStorage>,
 }
 
@@ -92,7 +109,8 @@ impl DecodeStore {
             text: RwSignal::new(String::new()),
             collapsed: RwSignal::new(false),
             sample: RwSignal::new(None),
-            raw: StoredValue::new(None),
+            hosted: RwSignal::new(None),
+            input: StoredValue::new_local(None),
             turn: StoredValue::new_local(Turn::default()),
         };
         provide_context(store);
@@ -115,7 +133,12 @@ impl DecodeStore {
         self.text.set(String::new());
         self.sample.set(None);
         self.collapsed.set(false);
-        self.raw.set_value(None);
+        self.input.set_value(None);
+        self.hosted.set(None);
+        self.drop_work();
+    }
+
+    fn drop_work(self) {
         self.work.set(None);
         self.findings.set(Findings::default());
         self.cursor.set(None);
@@ -130,91 +153,130 @@ impl DecodeStore {
     /// Decodes a sample.
     pub fn open_sample(self, sample: &'static Sample) {
         self.framing.set(None);
+        self.hosted.set(None);
         self.device.set(sample.device);
         self.text
             .set(String::from_utf8_lossy(sample.content).into_owned());
         self.sample.set(Some(sample.key));
         self.collapsed.set(true);
-        self.open(sample.title.to_owned(), sample.content.to_vec());
+        let input = if sample.content.is_empty() {
+            Input::Sample(sample.key)
+        } else {
+            Input::Bytes(Arc::new(sample.content.to_vec()))
+        };
+        self.open(sample.title.to_owned(), input);
     }
 
     /// Decodes pasted or typed text.
     pub fn open_text(self, text: &str) {
         self.sample.set(None);
-        self.open("pasted text".to_owned(), text.as_bytes().to_vec());
-    }
-
-    /// Decodes bytes that are in memory.
-    pub fn open(self, name: String, input: Vec<u8>) {
-        let input = Arc::new(input);
-        self.raw
-            .set_value((input.len() <= KEPT).then(|| Arc::clone(&input)));
-        self.read(name, input);
-    }
-
-    fn read(self, name: String, input: Arc<Vec<u8>>) {
-        let ticket = self.ticket();
-        let mut loader = Loader::new(self.framing.get_untracked());
-        if input.len() <= PIECE {
-            loader.push(&input);
-            self.accept(name, loader, false, &ticket);
-            return;
-        }
-        spawn_local(async move {
-            let mut slice = now_ms();
-            for (at, piece) in input.chunks(PIECE).enumerate() {
-                loader.push(piece);
-                if now_ms() - slice > SLICE_MS {
-                    self.report("Reading", part(at * PIECE, input.len()), loader.frames());
-                    pause().await;
-                    slice = now_ms();
-                }
-                if !ticket.is_valid() {
-                    self.stopped(name, loader);
-                    return;
-                }
-            }
-            self.accept(name, loader, false, &ticket);
-        });
+        let input = Input::Bytes(Arc::new(text.as_bytes().to_vec()));
+        self.open("pasted text".to_owned(), input);
     }
 
     /// Decodes a file, piece by piece.
     pub fn open_file(self, file: web_sys::File) {
-        let ticket = self.ticket();
         self.text.set(String::new());
         self.sample.set(None);
         self.collapsed.set(true);
-        self.raw.set_value(None);
-        self.report("Reading", 0.0, 0);
-        spawn_local(async move {
-            let name = file.name();
-            let mut loader = Loader::new(self.framing.get_untracked());
-            let size = file.size();
-            let mut kept = (size <= READ * 4.0).then(Vec::new);
-            let mut at = 0.0;
-            while at < size {
-                let Some(piece) = piece(&file, at, (at + READ).min(size)).await else {
-                    // The file went away or may not be read: what came so far is shown.
-                    self.accept(name, loader, true, &ticket);
-                    return;
-                };
-                if let Some(kept) = &mut kept {
-                    kept.extend_from_slice(&piece);
-                }
-                for part in piece.chunks(PIECE) {
-                    loader.push(part);
-                    if !ticket.is_valid() {
-                        self.stopped(name, loader);
-                        return;
-                    }
-                    self.report("Reading", at / size.max(1.0), loader.frames());
-                    pause().await;
-                }
-                at += READ;
+        self.open(file.name(), Input::File(file));
+    }
+
+    /// Decodes an input.
+    pub fn open(self, name: String, input: Input) {
+        self.input.set_value(Some((name, input)));
+        self.read();
+    }
+
+    /// The input that is open.
+    #[must_use]
+    pub fn input(self) -> Option<(String, Input)> {
+        self.input.get_value()
+    }
+
+    fn read(self) {
+        let ticket = self.ticket();
+        if let Some(framing) = self.hosted.get_untracked().filter(|f| !f.is_empty()) {
+            self.host(framing);
+            return;
+        }
+        let Some((name, input)) = self.input.get_value() else {
+            return;
+        };
+        let mut loader = Loader::new(self.framing.get_untracked());
+        match input {
+            Input::Bytes(bytes) if bytes.len() <= PIECE => {
+                loader.push(&bytes);
+                self.accept(name, loader, false, &ticket);
             }
-            self.raw.set_value(kept.map(Arc::new));
-            self.accept(name, loader, false, &ticket);
-        });
+            Input::Bytes(bytes) => spawn_local(self.read_bytes(name, bytes, loader, ticket)),
+            Input::File(file) => {
+                self.report("Reading", 0.0, 0);
+                spawn_local(self.read_file(name, file, loader, ticket));
+            }
+            Input::Sample(_) => self.host(""),
+        }
+    }
+
+    async fn read_bytes(
+        self,
+        name: String,
+        input: Arc<Vec<u8>>,
+        mut loader: Loader,
+        ticket: Ticket,
+    ) {
+        let mut slice = now_ms();
+        for (at, piece) in input.chunks(PIECE).enumerate() {
+            loader.push(piece);
+            if now_ms() - slice > SLICE_MS {
+                self.report("Reading", part(at * PIECE, input.len()), loader.frames());
+                pause().await;
+                slice = now_ms();
+            }
+            if !ticket.is_valid() {
+                self.stopped(name, loader);
+                return;
+            }
+        }
+        self.accept(name, loader, false, &ticket);
+    }
+
+    async fn read_file(
+        self,
+        name: String,
+        file: web_sys::File,
+        mut loader: Loader,
+        ticket: Ticket,
+    ) {
+        let size = file.size();
+        let mut at = 0.0;
+        while at < size && !loader.is_foreign() {
+            let Some(piece) = piece(&file, at, (at + READ).min(size)).await else {
+                // The file went away or may not be read: what came so far is shown.
+                self.accept(name, loader, true, &ticket);
+                return;
+            };
+            for part in piece.chunks(PIECE) {
+                loader.push(part);
+                if !ticket.is_valid() {
+                    self.stopped(name, loader);
+                    return;
+                }
+                self.report("Reading", at / size.max(1.0), loader.frames());
+                pause().await;
+            }
+            at += READ;
+        }
+        self.accept(name, loader, false, &ticket);
+    }
+
+    /// Leaves the input to the program that decodes it; an empty framing is automatic.
+    fn host(self, framing: &'static str) {
+        self.progress.set(None);
+        let device = self.device.get_untracked();
+        self.device.set(device.filter(|d| d.family().is_some()));
+        self.hosted.set(Some(framing));
+        self.drop_work();
     }
 
     fn report(self, what: &'static str, done: f64, frames: u32) {
@@ -229,7 +291,13 @@ impl DecodeStore {
         }
     }
 
-    fn accept(self, name: String, loader: Loader, partial: bool, ticket: &Ticket) {
+    fn accept(self, name: String, mut loader: Loader, partial: bool, ticket: &Ticket) {
+        loader.end();
+        if loader.is_foreign() {
+            self.host("");
+            return;
+        }
+        self.hosted.set(None);
         let work = Work::new(name, loader.finish(), partial);
         let first = (!work.session.is_empty()).then_some(0);
         let keep = self
@@ -243,51 +311,13 @@ impl DecodeStore {
         self.look_for_problems(ticket.clone());
     }
 
-    /// Another framing: the input is read anew, or if it was too large to keep, its bytes are.
-    pub fn choose_framing(self, framing: Option<Framing>) {
-        self.framing.set(framing);
-        let name = self
-            .work
-            .with_untracked(|w| w.as_ref().map(|w| w.name.clone()));
-        let Some(name) = name else { return };
+    /// Another framing, by its key: the input is read anew.
+    pub fn choose_framing(self, key: &str) {
+        self.framing.set(Framing::from_key(key));
+        let foreign = FOREIGN.iter().find(|(k, _)| *k == key);
+        self.hosted.set(foreign.map(|(k, _)| *k));
         self.cursor.set(None);
-        if let Some(raw) = self.raw.get_value() {
-            self.read(name, raw);
-        } else if let Some(framing) = framing {
-            self.rescan(framing);
-        }
-    }
-
-    fn rescan(self, framing: Framing) {
-        let ticket = self.ticket();
-        spawn_local(async move {
-            let mut rescan = Rescan::new(framing);
-            loop {
-                let step = self.work.with_untracked(|w| {
-                    let old = &w.as_ref()?.session;
-                    let done = rescan.step(old, PIECE);
-                    Some((done, rescan.progress(old)))
-                });
-                let Some((done, progress)) = step else { return };
-                if done {
-                    break;
-                }
-                self.report("Looking for frames", progress, 0);
-                pause().await;
-                if !ticket.is_valid() {
-                    return;
-                }
-            }
-            self.work.update(|w| {
-                if let Some(work) = w {
-                    work.session = rescan.finish();
-                }
-            });
-            self.cursor.set(Some(0));
-            self.selected.set(None);
-            self.bump();
-            self.look_for_problems(ticket);
-        });
+        self.read();
     }
 
     /// Another device: the frames stay, their meaning changes.

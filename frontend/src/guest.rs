@@ -5,6 +5,7 @@
 //!   window.valvescopeProgram(name) ──────► loaded once
 //!   open(host, place, send, go) ─────────► Guest, a view in `host`
 //!   handle.place(json), hear(text) ──────► Guest::place, Guest::listen
+//!   handle.input(name, bytes) ───────────► Guest::on_input
 //!   socket, address bar ◄──────────────── Guest::send, Guest::go
 //! ```
 
@@ -17,6 +18,7 @@ use crate::state::place::Place;
 use crate::task::now_ms;
 
 type Ear = Rc<dyn Fn(&str)>;
+type Opener = Rc<dyn Fn(&str, &JsValue)>;
 
 /// What the page lets a program do.
 #[derive(Debug)]
@@ -38,6 +40,9 @@ struct Heard {
     ear: Option<Ear>,
     /// What came before anybody listened.
     early: Vec<String>,
+    opener: Option<Opener>,
+    /// The last input that came before anybody wanted one.
+    input: Option<(String, JsValue)>,
 }
 
 /// A program's side of the page. Belongs to the owner under which it was made.
@@ -96,7 +101,8 @@ impl Guest {
     }
 
     /// Calls `ear` with each message of the backend, those that came before it included: the
-    /// `hello` and what begins with `{"dop":`.
+    /// `hello`, what begins as [`PROGRAM_PREFIXES`](shared::proto::PROGRAM_PREFIXES) say, and the
+    /// captures of buses whose framing the page does not know.
     pub fn listen(self, ear: impl Fn(&str) + 'static) {
         let ear: Ear = Rc::new(ear);
         let early = self.heard.try_update_value(|heard| {
@@ -104,6 +110,31 @@ impl Guest {
             core::mem::take(&mut heard.early)
         });
         early.iter().flatten().for_each(|text| ear(text));
+    }
+
+    /// An input to decode came: bytes, a file, or as a text the key of a sample.
+    pub fn open(self, name: &str, input: &JsValue) {
+        let opener = self.heard.try_update_value(|heard| {
+            if heard.opener.is_none() {
+                heard.input = Some((name.to_owned(), input.clone()));
+            }
+            heard.opener.clone()
+        });
+        if let Some(Some(opener)) = opener {
+            opener(name, input);
+        }
+    }
+
+    /// Calls `open` with each input to decode, one that came before included.
+    pub fn on_input(self, open: impl Fn(&str, &JsValue) + 'static) {
+        let open: Opener = Rc::new(open);
+        let early = self.heard.try_update_value(|heard| {
+            heard.opener = Some(Rc::clone(&open));
+            heard.input.take()
+        });
+        if let Some(Some((name, input))) = early {
+            open(&name, &input);
+        }
     }
 
     /// Sends a message to the backend, as JSON. It is lost while there is no connection.

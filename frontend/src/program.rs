@@ -68,6 +68,11 @@ macro_rules! program {
                 self.guest.move_to(json);
             }
 
+            /// An input to decode: its name, and a text, bytes, a file, or the key of a sample.
+            pub fn input(&self, name: &str, input: &JsValue) {
+                self.guest.open(name, input);
+            }
+
             /// Takes the program out of the page.
             pub fn close(self) {
                 drop(self);

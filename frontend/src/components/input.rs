@@ -6,7 +6,6 @@ use leptos::ev;
 use leptos::html::Input;
 use leptos::prelude::*;
 use shared::device::Device;
-use shared::frame::Framing;
 use wasm_bindgen::JsCast;
 
 use crate::browser::value_of;
@@ -95,7 +94,7 @@ pub fn DecodeInput() -> impl IntoView {
     };
     let tools: Draw = Arc::new(move |html: &mut Markup| draw_choices(store, html));
     let on_act = Callback::new(move |act: Act| match act.name.as_str() {
-        "framing" => store.choose_framing(Framing::from_key(&act.value)),
+        "framing" => store.choose_framing(&act.value),
         "device" => store.choose_device(Device::from_key(&act.value)),
         "sample" => {
             if let Some(sample) = by_key(&act.value) {
@@ -154,6 +153,7 @@ fn draw_choices(store: DecodeStore, html: &mut Markup) {
             framing,
             device,
             sample: store.sample.get(),
+            hosted: store.hosted.get(),
             work: work.as_ref(),
             progress: store.progress.get(),
         };

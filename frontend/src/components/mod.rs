@@ -1,6 +1,7 @@
 //! Each component shows one thing.
 
 pub mod conn;
+pub mod decode_panes;
 pub mod drawn;
 pub mod frame_detail;
 mod frame_parts;

@@ -6,11 +6,13 @@ use js_sys::{Function, Reflect};
 use leptos::html::Div;
 use leptos::prelude::*;
 use leptos::task::spawn_local;
+use shared::device::Device;
 use wasm_bindgen::prelude::*;
 
 use crate::browser::offset_minutes;
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::icon::Glyph;
+use crate::decode_store::{DecodeStore, Input};
 use crate::erased::{effect, memo};
 use crate::live::Live;
 use crate::markup::Markup;
@@ -61,6 +63,13 @@ impl Guest {
             let _said = function.call1(&self.handle, &JsValue::from_str(text));
         }
     }
+
+    /// Gives the program an input to decode.
+    fn give(&self, name: &str, input: &JsValue) {
+        if let Some(function) = function(&self.handle, "input") {
+            let _said = function.call2(&self.handle, &JsValue::from_str(name), input);
+        }
+    }
 }
 
 impl Drop for Guest {
@@ -108,10 +117,21 @@ fn open(
 /// Where the page is, for a program that shows a device; `None` while it is leaving for a place that
 /// is not the program's.
 fn place(live: Live, router: Router, device: Option<&String>) -> Option<Place> {
-    let route = router.route();
+    let mut route = router.route();
     let tab = match (route.screen, device) {
         (Screen::Device(tag, tab), Some(device)) if tag == *device => tab,
         (Screen::Dop(tab) | Screen::Snapshots(tab), None) => tab,
+        (Screen::Decode, None) => {
+            let store: DecodeStore = expect_context();
+            let device = store.device.get().map_or("", Device::key);
+            for (key, value) in [
+                ("framing", store.hosted.get().unwrap_or_default()),
+                ("device", device),
+            ] {
+                route.query.push((key.to_owned(), value.to_owned()));
+            }
+            "decode".to_owned()
+        }
         _ => return None,
     };
     let online = live.conn.get().is_up();
@@ -168,8 +188,8 @@ pub fn Program(
                 state.set(State::Failed);
                 return;
             };
-            state.set(State::Open);
             guest.set_value(Some(opened));
+            state.set(State::Open);
             live.listen(move |text| {
                 let _gone = guest.try_with_value(|guest| {
                     if let Some(guest) = guest {
@@ -189,6 +209,27 @@ pub fn Program(
         guest.with_value(|guest| {
             if let (Some(guest), Some(json)) = (guest, json) {
                 guest.tell("place", &json);
+            }
+        });
+    });
+    // What the decode page leaves to the program.
+    let decode: DecodeStore = expect_context();
+    effect(move || {
+        decode.hosted.track();
+        if name != HART || state.get() != State::Open {
+            return;
+        }
+        let Some((name, input)) = decode.input() else {
+            return;
+        };
+        let input = match input {
+            Input::Bytes(bytes) => js_sys::Uint8Array::from(bytes.as_slice()).into(),
+            Input::File(file) => file.into(),
+            Input::Sample(key) => JsValue::from_str(key),
+        };
+        guest.with_value(|guest| {
+            if let Some(guest) = guest {
+                guest.give(&name, &input);
             }
         });
     });

@@ -1,11 +1,11 @@
 //! Around the input of the decode page: choices, what was found, samples, the head of the problems.
 
-use shared::device::Device;
+use shared::device::{Device, Family};
 use shared::frame::Framing;
 
 use super::Markup;
 use super::control::{Button, Choice, tick};
-use crate::decode_store::Progress;
+use crate::decode_store::{FOREIGN, Progress};
 use crate::format::{count, size, thousands};
 use crate::state::samples::SAMPLES;
 use crate::state::work::{Work, form_label};
@@ -19,6 +19,8 @@ pub struct Choices<'a> {
     pub device: Option<Device>,
     /// Key of the open sample.
     pub sample: Option<&'static str>,
+    /// Set while a program of its own decodes: the framing that the user chose, empty for automatic.
+    pub hosted: Option<&'static str>,
     /// The input and its frames.
     pub work: Option<&'a Work>,
     /// Work under way.
@@ -27,17 +29,32 @@ pub struct Choices<'a> {
 
 /// Framing, device, what was found and how far it is, samples.
 pub fn choices(html: &mut Markup, now: &Choices<'_>) {
-    let found = now.work.map(|w| w.session.framing().label());
+    let hart = now.hosted.is_some();
+    let framing = now.work.map(|w| w.session.framing().label());
+    let framing = framing.or(hart.then_some("HART"));
+    // What is on a HART line is no choice for a Modbus line.
+    let rotork = Family::ALL.into_iter().filter(|_| hart);
+    let modbus = Device::ALL.into_iter().filter(|_| !hart);
+    let devices = rotork.map(Device::Rotork).chain(modbus);
     Choice {
         act: "framing",
         testid: "decode-framing",
         label: "Framing",
-        none: &automatic(now.framing.is_none(), found),
-        value: now.framing.map_or("", Framing::key),
+        none: &automatic(
+            now.framing.is_none() && now.hosted.is_none_or(str::is_empty),
+            framing,
+        ),
+        value: now.hosted.unwrap_or(now.framing.map_or("", Framing::key)),
         labelled: true,
         title: "",
     }
-    .draw(html, Framing::ALL.iter().map(|f| (f.key(), f.label())));
+    .draw(
+        html,
+        Framing::ALL
+            .iter()
+            .map(|f| (f.key(), f.label()))
+            .chain(FOREIGN.iter().copied()),
+    );
     let guess = now.work.map(|w| &w.guess).filter(|_| now.device.is_none());
     Choice {
         act: "device",
@@ -48,30 +65,10 @@ pub fn choices(html: &mut Markup, now: &Choices<'_>) {
         labelled: true,
         title: guess.map_or("", |g| &g.reason),
     }
-    .draw(html, Device::ALL.iter().map(|d| (d.key(), d.label())));
-    html.open(
-        "span",
-        &[
-            ("class", "found"),
-            ("data-testid", "found"),
-            ("role", "status"),
-        ],
-    );
+    .draw(html, devices.map(|d| (d.key(), d.label())));
     if let Some(work) = now.work {
-        let stopped = if work.partial {
-            ", reading was stopped"
-        } else {
-            ""
-        };
-        html.text(&format!(
-            "{}: {}, {}, {}{stopped}",
-            work.name,
-            form_label(work.form),
-            size(work.session.end()),
-            count(u64::from(work.session.len()), "frame")
-        ));
+        found(html, work);
     }
-    html.close("span");
     if let Some(progress) = &now.progress {
         progress_bar(html, progress);
     }
@@ -89,10 +86,35 @@ pub fn choices(html: &mut Markup, now: &Choices<'_>) {
         act: "clear",
         testid: "clear",
         words: "Clear",
-        hidden: now.work.is_none(),
+        hidden: now.work.is_none() && !hart,
         ..Button::default()
     }
     .draw(html);
+}
+
+/// What was opened, and what was found in it.
+pub fn found(html: &mut Markup, work: &Work) {
+    html.open(
+        "span",
+        &[
+            ("class", "found"),
+            ("data-testid", "found"),
+            ("role", "status"),
+        ],
+    );
+    let stopped = if work.partial {
+        ", reading was stopped"
+    } else {
+        ""
+    };
+    html.text(&format!(
+        "{}: {}, {}, {}{stopped}",
+        work.name,
+        form_label(work.form),
+        size(work.session.end()),
+        count(u64::from(work.session.len()), "frame")
+    ))
+    .close("span");
 }
 
 fn automatic(is: bool, found: Option<&str>) -> String {
@@ -102,7 +124,8 @@ fn automatic(is: bool, found: Option<&str>) -> String {
     }
 }
 
-fn progress_bar(html: &mut Markup, progress: &Progress) {
+/// How far long work is, and a way to stop it.
+pub fn progress_bar(html: &mut Markup, progress: &Progress) {
     let percent = progress.percent().to_string();
     html.open("span", &[("class", "progress")]);
     html.open("progress", &[("max", "100"), ("value", &percent)])
@@ -192,6 +215,7 @@ mod tests {
         let now = Choices {
             framing: None,
             device: None,
+            hosted: None,
             sample: None,
             work: Some(&work),
             progress: None,

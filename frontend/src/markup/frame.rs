@@ -1,5 +1,7 @@
 //! A frame in a list, the head of a frame, and its problems.
 
+#[cfg(feature = "hart")]
+use shared::frame::Framing;
 use shared::frame::Role;
 use shared::place::Place;
 use shared::problem::Problem;
@@ -9,6 +11,9 @@ use crate::components::icon::Glyph;
 use crate::format::{count, thousands};
 use crate::state::summary::{Summary, function, role};
 use crate::state::work::Shown;
+
+/// True in the program that shows HART frames, and no others.
+const HART: bool = cfg!(feature = "hart");
 
 /// What stands beside a frame in its list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -28,8 +33,8 @@ pub fn head(place: &str, latency: bool) -> String {
         ("num", "#"),
         ("num", place),
         ("", ""),
-        ("num", "Unit"),
-        ("", "Function"),
+        ("num", if HART { "Address" } else { "Unit" }),
+        ("", if HART { "Command" } else { "Function" }),
         ("", "About"),
     ] {
         html.node("span", class, text);
@@ -67,16 +72,10 @@ pub fn row(html: &mut Markup, index: u32, summary: &Summary, beside: &Beside) {
     html.node("span", "num quiet", &thousands(u64::from(index)));
     html.node("span", "num mono", &beside.place);
     pair(html, frame.role, frame.pair());
-    let unit = if noise {
-        String::new()
-    } else {
-        frame.unit.to_string()
-    };
-    html.node("span", "num unit-address", &unit);
+    html.node("span", "num unit-address", &summary.unit);
     html.open("span", &[("class", "frame-function")]);
-    if !noise {
-        html.node("code", "", &format!("{:02X}", frame.function))
-            .text(" ");
+    if !summary.code.is_empty() {
+        html.node("code", "", &summary.code).text(" ");
     }
     html.text(summary.function).close("span");
     html.node("span", "frame-about", &summary.detail);
@@ -161,16 +160,14 @@ fn title(html: &mut Markup, shown: &Shown, aside: &str) {
     html.open("h2", &[]);
     html.node("span", "quiet", &format!("#{} ", shown.index));
     if frame.is_noise() {
-        html.text("Noise");
+        html.text("Noise")
+            .close("h2")
+            .open("p", &[("class", "quiet")]);
     } else {
-        html.text(&format!("{} · {}", function(&frame), role(frame.role)));
-    }
-    html.close("h2").open("p", &[("class", "quiet")]);
-    if !frame.is_noise() {
-        html.text(&format!(
-            "unit {} · function {:02X} · ",
-            frame.unit, frame.function
-        ));
+        let (function, who) = about(shown);
+        html.text(&format!("{function} · {}", role(frame.role)));
+        html.close("h2").open("p", &[("class", "quiet")]);
+        html.text(&who).text(" · ");
     }
     html.text(&format!(
         "offset {} · {} ",
@@ -194,6 +191,18 @@ fn title(html: &mut Markup, shown: &Shown, aside: &str) {
         html.text(&format!("frame {pair}")).close("button");
     }
     html.text(aside).close("p");
+}
+
+/// Name of the function, and whom a frame is about.
+fn about(shown: &Shown) -> (&'static str, String) {
+    #[cfg(feature = "hart")]
+    if !Framing::MODBUS.contains(&shown.context.framing) {
+        use crate::hart::state::summary::{title, who};
+        return (title(&shown.decoded), who(&shown.decoded));
+    }
+    let frame = shown.frame;
+    let who = format!("unit {} · function {:02X}", frame.unit, frame.function);
+    (function(&frame), who)
 }
 
 /// The problems of a frame, each a button that shows the bytes.

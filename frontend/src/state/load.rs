@@ -1,7 +1,7 @@
 //! An input to frames, piece by piece, so that the page stays alive whatever its size.
 
 use shared::capture::Capture;
-use shared::frame::{Framing, detect};
+use shared::frame::{Framing, detect, is_hart};
 use shared::session::Session;
 use shared::text::{Form, HexReader, TextProblem, form_for};
 
@@ -25,6 +25,7 @@ pub struct Loader {
     session: Option<Session>,
     problems: Vec<TextProblem>,
     more_problems: usize,
+    foreign: bool,
 }
 
 /// What became of an input.
@@ -53,11 +54,21 @@ impl Loader {
             session: None,
             problems: Vec::new(),
             more_problems: 0,
+            foreign: false,
         }
+    }
+
+    /// True once it turned out that the input is HART, which this program does not decode.
+    #[must_use]
+    pub const fn is_foreign(&self) -> bool {
+        self.foreign
     }
 
     /// Takes a piece in.
     pub fn push(&mut self, piece: &[u8]) {
+        if self.foreign {
+            return;
+        }
         if self.form.is_some() {
             self.read(piece);
         } else {
@@ -74,18 +85,22 @@ impl Loader {
         self.session.as_ref().map_or(0, Session::len)
     }
 
-    /// The input is at its end.
-    #[must_use]
-    pub fn finish(mut self) -> Loaded {
+    /// The input is at its end; nothing more is pushed.
+    pub fn end(&mut self) {
         if self.form.is_none() {
             self.begin();
         }
-        let form = self.form.unwrap_or(Form::Hex);
-        if form == Form::Hex {
+        if self.form == Some(Form::Hex) {
             self.reader.finish(&mut self.bytes, &mut self.problems);
         }
         self.scan(true);
         self.cut_problems();
+    }
+
+    /// What was found up to here.
+    #[must_use]
+    pub fn finish(self) -> Loaded {
+        let form = self.form.unwrap_or(Form::Hex);
         Loaded {
             form,
             session: self.session.unwrap_or_else(|| Session::new(Framing::Rtu)),
@@ -120,6 +135,11 @@ impl Loader {
         if self.session.is_none() && !at_end && self.bytes.len() < SAMPLE {
             return;
         }
+        let here = !cfg!(feature = "hart") && self.session.is_none() && self.chosen.is_none();
+        if self.foreign || here && is_hart(&self.bytes) {
+            self.foreign = true;
+            return;
+        }
         let session = self.session.get_or_insert_with(|| {
             let framing = self.chosen.unwrap_or_else(|| match self.form {
                 Some(Form::AsciiLines) => Framing::Ascii,
@@ -137,59 +157,12 @@ impl Loader {
     }
 }
 
-/// Scans the bytes of a session anew with another framing, in steps.
-#[derive(Debug)]
-pub struct Rescan {
-    next: u32,
-    session: Session,
-    bytes: Vec<u8>,
-}
-
-impl Rescan {
-    /// At the start of a session's bytes.
-    #[must_use]
-    pub fn new(framing: Framing) -> Self {
-        Self {
-            next: 0,
-            session: Session::new(framing),
-            bytes: Vec::new(),
-        }
-    }
-
-    /// Takes about `budget` bytes on. True when all are done.
-    pub fn step(&mut self, old: &Session, budget: usize) -> bool {
-        self.bytes.clear();
-        while self.bytes.len() < budget && self.next < old.len() {
-            self.bytes
-                .extend_from_slice(old.bytes(self.next).unwrap_or(&[]));
-            self.next += 1;
-        }
-        self.session.push(&Capture::of(&self.bytes));
-        let done = self.next >= old.len();
-        if done {
-            self.session.finish();
-        }
-        done
-    }
-
-    /// How far it is, in parts of 1.
-    #[must_use]
-    pub fn progress(&self, old: &Session) -> f64 {
-        f64::from(self.next) / f64::from(old.len().max(1))
-    }
-
-    /// The result.
-    #[must_use]
-    pub fn finish(self) -> Session {
-        self.session
-    }
-}
-
 /// Loads an input that is in memory at once.
 #[must_use]
 pub fn load(input: &[u8], chosen: Option<Framing>) -> Loaded {
     let mut loader = Loader::new(chosen);
     loader.push(input);
+    loader.end();
     loader.finish()
 }
 
@@ -226,19 +199,11 @@ mod tests {
             for piece in text.chunks(size) {
                 loader.push(piece);
             }
+            loader.end();
             let cut = loader.finish();
             assert_eq!(shape(&cut.session), shape(&whole.session));
         }
         assert_eq!(whole.session.len(), 10_000);
-    }
-
-    #[test]
-    fn a_rescan_equals_a_scan() {
-        let bytes = load(&POLL.repeat(40), None);
-        let chosen = load(&POLL.repeat(40), Some(Framing::Tcp));
-        let mut rescan = Rescan::new(Framing::Tcp);
-        while !rescan.step(&bytes.session, 100) {}
-        assert_eq!(shape(&rescan.finish()), shape(&chosen.session));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Captures to try, part of the page so that they are there without a network.
 
-use shared::device::Device;
+use shared::device::{Device, Family};
 
 /// A capture to try.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,14 +11,28 @@ pub struct Sample {
     pub title: &'static str,
     /// What is to be seen in it.
     pub about: &'static str,
-    /// The file as it is.
+    /// The file as it is; empty if the program of HART has it.
     pub content: &'static [u8],
     /// Device to decode with, where it can't be told from the bytes.
     pub device: Option<Device>,
 }
 
+/// A sample that only the program of HART carries.
+#[cfg(feature = "hart")]
+macro_rules! hart {
+    ($name:literal) => {
+        include_bytes!(concat!("../../../static/samples/", $name))
+    };
+}
+#[cfg(not(feature = "hart"))]
+macro_rules! hart {
+    ($name:literal) => {
+        b""
+    };
+}
+
 /// All samples.
-pub const SAMPLES: [Sample; 7] = [
+pub const SAMPLES: [Sample; 10] = [
     Sample {
         key: "icon3000-poll",
         title: "ICON3000 poll",
@@ -60,6 +74,27 @@ pub const SAMPLES: [Sample; 7] = [
         about: "Bytes as a program has them",
         content: include_bytes!("../../../static/samples/array.c"),
         device: None,
+    },
+    Sample {
+        key: "hart-handheld",
+        title: "HART handheld",
+        about: "Identity, set-up, variables and status of a Rotork actuator",
+        content: hart!("hart-handheld.txt"),
+        device: Some(Device::Rotork(Family::Iq)),
+    },
+    Sample {
+        key: "hart-damaged",
+        title: "HART, damaged",
+        about: "Echo, eaten preamble, noise, cut and changed bytes, a burst",
+        content: hart!("hart-damaged.hex"),
+        device: Some(Device::Rotork(Family::Iq)),
+    },
+    Sample {
+        key: "hart-ip",
+        title: "HART-IP",
+        about: "A gateway's session, a burst, a direct PDU",
+        content: hart!("hart-ip.hex"),
+        device: Some(Device::Rotork(Family::Iq)),
     },
     Sample {
         key: "ddc100",

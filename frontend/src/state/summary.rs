@@ -1,6 +1,8 @@
 //! A frame in one line.
 
 use shared::decode::{Context, pdu_of};
+#[cfg(feature = "hart")]
+use shared::frame::Framing;
 use shared::frame::{Frame, Marks, Role};
 use shared::pdu::{Asked, names};
 use shared::problem::{Finding, Problem, Severity};
@@ -15,6 +17,10 @@ use super::findings::decode_clipped;
 pub struct Summary {
     /// Its entry of the index.
     pub frame: Frame,
+    /// Whom it is about: the unit address; empty for noise.
+    pub unit: String,
+    /// The function code; empty for noise.
+    pub code: String,
     /// Name of the function.
     pub function: &'static str,
     /// What it is about.
@@ -35,9 +41,20 @@ pub fn summary(
     if !decode_clipped(session, index, context, scratch) {
         return None;
     }
+    #[cfg(feature = "hart")]
+    if !Framing::MODBUS.contains(&context.framing) {
+        return Some(crate::hart::state::summary::of(frame, scratch));
+    }
     let worst = scratch.problems().iter().map(Problem::severity).max();
+    let (unit, code) = if frame.is_noise() {
+        Default::default()
+    } else {
+        (frame.unit.to_string(), format!("{:02X}", frame.function))
+    };
     Some(Summary {
         frame,
+        unit,
+        code,
         function: function(&frame),
         detail: detail(session, &frame, index, scratch),
         worst,
@@ -141,6 +158,7 @@ mod tests {
     use crate::state::load::load;
     use shared::device::Device;
     use shared::encode::frame;
+    #[cfg(not(feature = "hart"))]
     use shared::frame::Framing;
     use shared::render::hex;
 

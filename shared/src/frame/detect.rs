@@ -1,10 +1,10 @@
 //! Which framing a stream has, judged by how much of it decodes.
 
-use super::{Framing, Role, scan};
+use super::{Frame, Framing, Role, scan};
 use crate::pdu::length::{self, Length};
 
 /// How many bytes are tried.
-const SAMPLE: usize = 16 * 1024;
+pub(super) const SAMPLE: usize = 16 * 1024;
 
 /// The framing under which most bytes belong to good frames.
 ///
@@ -16,16 +16,21 @@ pub fn detect(bytes: &[u8]) -> Framing {
     let sample = bytes.get(..SAMPLE).unwrap_or(bytes);
     let mut best = (0_u64, None);
     for framing in Framing::ALL {
-        let good = scan(sample, framing)
-            .iter()
-            .filter(|f| f.role != Role::Noise && !f.marks.is_damaged())
-            .map(|f| u64::from(f.len))
-            .fold(0_u64, u64::saturating_add);
+        let good = good(&scan(sample, framing));
         if good > best.0 {
             best = (good, Some(framing));
         }
     }
     best.1.unwrap_or_else(|| by_look(sample))
+}
+
+/// How many bytes belong to sound frames.
+pub(super) fn good(frames: &[Frame]) -> u64 {
+    frames
+        .iter()
+        .filter(|f| f.role != Role::Noise && !f.marks.is_damaged())
+        .map(|f| u64::from(f.len))
+        .fold(0_u64, u64::saturating_add)
 }
 
 /// What the first bytes look like if nothing in them is sound.

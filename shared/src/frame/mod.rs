@@ -9,10 +9,12 @@
 pub mod ascii;
 pub mod check;
 mod detect;
+mod look;
 mod rtu;
 mod tcp;
 
 pub use detect::detect;
+pub use look::is_hart;
 
 use crate::capture::Direction;
 use crate::transaction::Pairing;

@@ -275,9 +275,11 @@ impl Sequence {
 
 /// Whom a message is about, in a few words.
 pub(super) fn who(bytes: &[u8]) -> String {
-    let name = Header::of(bytes).and_then(|h| HART_IP_MESSAGE_ID.name(u32::from(h.id)));
+    let header = Header::of(bytes);
+    let name = header.and_then(|h| HART_IP_MESSAGE_ID.name(u32::from(h.id)));
     let name = name.unwrap_or("HART-IP").to_lowercase();
-    match bytes.get(HEADER..).and_then(identity) {
+    let carried = header.is_some_and(|h| h.id == TOKEN_PASSING);
+    match bytes.get(HEADER..).filter(|_| carried).and_then(identity) {
         Some((head, number)) if head.address != Address::BROADCAST => {
             let label = command(number).map_or("unknown command", |c| c.label);
             format!("{name}, {}, command {number} {label}", head.address)

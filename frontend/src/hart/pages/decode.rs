@@ -1,0 +1,80 @@
+//! What do these bytes say? Input, framing and device are chosen in the page around the program.
+
+use std::sync::Arc;
+
+use leptos::prelude::*;
+use shared::device::Device;
+use shared::frame::Framing;
+use wasm_bindgen::{JsCast, JsValue};
+
+use crate::components::decode_panes::DecodePanes;
+use crate::components::drawn::{Act, Draw, Drawn};
+use crate::decode_store::{DecodeStore, Input};
+use crate::erased::{effect, memo};
+use crate::guest::Guest;
+use crate::markup::Markup;
+use crate::markup::decode;
+use crate::state::samples::by_key;
+
+/// The frames of an input that the page handed on.
+#[component]
+pub(super) fn DecodePage() -> impl IntoView {
+    let store = DecodeStore::provide();
+    let guest = Guest::get();
+    let chosen = |key: &'static str| {
+        memo(move || {
+            guest
+                .place
+                .with(|p| p.get(key).unwrap_or_default().to_owned())
+        })
+    };
+    let (framing, device) = (chosen("framing"), chosen("device"));
+    effect(move || {
+        framing.with(|key| {
+            if store.framing.get_untracked() != Framing::from_key(key) {
+                store.choose_framing(key);
+            }
+        });
+    });
+    effect(move || {
+        let device = device.with(|key| Device::from_key(key));
+        if store.device.get_untracked() != device {
+            store.choose_device(device);
+        }
+    });
+    guest.on_input(move |name, input| open(store, name, input));
+
+    let found: Draw = Arc::new(move |html: &mut Markup| {
+        store.work.with(|work| {
+            if let Some(work) = work {
+                decode::found(html, work);
+            }
+        });
+        if let Some(progress) = store.progress.get() {
+            decode::progress_bar(html, &progress);
+        }
+    });
+    let on_act = Callback::new(move |_: Act| store.cancel());
+    view! {
+        <Drawn class="hart-found" draw=found on_act=on_act/>
+        <DecodePanes/>
+    }
+}
+
+/// Opens what the page hands on.
+fn open(store: DecodeStore, name: &str, input: &JsValue) {
+    if let Some(key) = input.as_string() {
+        if let Some(sample) = by_key(&key) {
+            store.open_sample(sample);
+        }
+        return;
+    }
+    let input = match input.clone().dyn_into::<web_sys::File>() {
+        Ok(file) => Input::File(file),
+        Err(bytes) => {
+            let bytes = bytes.unchecked_into::<js_sys::Uint8Array>().to_vec();
+            Input::Bytes(Arc::new(bytes))
+        }
+    };
+    store.open(name.to_owned(), input);
+}

@@ -1,0 +1,2 @@
+//! What the program knows, without signals or a browser.
+pub mod summary;

@@ -1,0 +1,264 @@
+//! HART end to end: pasted frames, as a person sees them.
+
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tests::browser::{Page, Scheme};
+use tests::server::Server;
+
+/// Poll of a Rotork actuator and its answer: the worked frames R5 and R6, five preamble bytes each.
+const POLL: &str = "FF FF FF FF FF 82 AE DD 01 23 45 03 00 95\n\
+    FF FF FF FF FF 86 AE DD 01 23 45 03 1A 00 00 41 40 00 00 39 42 48 00 00 39 42 46 00 00 39 41 48 \
+    00 00 39 7F A0 00 00 52";
+
+/// Types into the paste box as a person would paste.
+async fn paste(page: &Page, text: &str) {
+    page.wait_for("[data-testid=paste]").await;
+    page.eval(&format!(
+        "const box = document.querySelector('[data-testid=paste]');
+         box.value = {text:?};
+         box.dispatchEvent(new Event('input', {{ bubbles: true }}));"
+    ))
+    .await;
+}
+
+/// Chooses from a list as a person would.
+async fn choose(page: &Page, testid: &str, value: &str) {
+    page.eval(&format!(
+        "const list = document.querySelector('[data-testid={testid}]');
+         list.value = {value:?};
+         list.dispatchEvent(new Event('change', {{ bubbles: true }}));"
+    ))
+    .await;
+}
+
+async fn count(page: &Page, css: &str) -> u64 {
+    let script = format!("return document.querySelectorAll({css:?}).length");
+    page.eval(&script).await.as_u64().expect("a number")
+}
+
+/// Waits until an expression with `$` for the first element of a selector is true.
+async fn until(page: &Page, css: &str, test: &str) {
+    let test = test.replace('$', "e");
+    page.wait_until(&format!(
+        "(e => e && ({test}))(document.querySelector({css:?}))"
+    ))
+    .await;
+}
+
+/// The text of a field of the frame that is shown.
+async fn field(page: &Page, path: &str) -> String {
+    page.text(&format!("[data-path='{path}'] .tree-value"))
+        .await
+        .replace('\n', " ")
+}
+
+/// Presses a key where the focus is.
+async fn press(page: &Page, key: &str) {
+    for kind in ["keyDown", "keyUp"] {
+        let params = json!({ "type": kind, "key": key, "code": key });
+        page.devtools("Input.dispatchKeyEvent", params).await;
+    }
+}
+
+/// Both sizes in both schemes, for people to look at.
+async fn look(page: &Page, name: &str) {
+    for (scheme, shade) in [(Scheme::Light, "light"), (Scheme::Dark, "dark")] {
+        for (width, height) in [(1440, 900), (390, 844)] {
+            page.show(width, height, scheme).await;
+            tokio::time::sleep(Duration::from_millis(250)).await;
+            page.screenshot(&format!("hart-{name}-{width}-{shade}"))
+                .await;
+        }
+    }
+    page.show(1440, 900, Scheme::Light).await;
+}
+
+/// Pasted HART is noticed, decoded by its own program, and shown as Modbus is: rows, tree, bytes,
+/// pairs. Modbus pasted over it is decoded by the page again.
+#[tokio::test]
+async fn pasted_frames_are_decoded() {
+    let server = Server::start(&[]);
+    let page = Page::open(&server.url("/#/decode")).await;
+    page.show(1440, 900, Scheme::Light).await;
+    paste(&page, POLL).await;
+    page.wait_for("[data-testid=program][data-state=open]")
+        .await;
+    until(
+        &page,
+        "[data-testid=found]",
+        "/2 frames/.test($.textContent)",
+    )
+    .await;
+    let row = page.text("[data-testid=frame-row][data-index='1']").await;
+    for words in [
+        "2EDD 012345",
+        "Read dynamic variables",
+        "Success",
+        "Loop current 12 mA",
+    ] {
+        assert!(row.contains(words), "{words} in {row}");
+    }
+    // The answer: values with unit, no fourth variable, and the way to the request.
+    page.click("[data-testid=frame-row][data-index='1']").await;
+    page.wait_for("[data-path='command.3.pv']").await;
+    assert_eq!(field(&page, "command.3.pv").await, "50 %");
+    assert_eq!(field(&page, "command.3.sv").await, "49.5 %");
+    assert_eq!(field(&page, "command.3.loop_current").await, "12 mA");
+    let none = field(&page, "command.3.qv").await;
+    assert!(none.contains("not a number"), "{none}");
+    // Bytes and fields are one picture: byte 20 is the first of the primary variable.
+    page.click("[data-testid=hex-byte][data-offset='20']").await;
+    until(
+        &page,
+        "[data-path='command.3.pv']",
+        "$.classList.contains('selected')",
+    )
+    .await;
+    let facts = page.text("[data-testid=field-facts]").await;
+    assert!(facts.contains("command.3.pv"), "{facts}");
+    page.click("[data-testid=frame-pair]").await;
+    until(
+        &page,
+        "[data-testid=frame-detail] h2",
+        "/request/.test($.textContent)",
+    )
+    .await;
+    // By keyboard: down to the answer again.
+    page.eval("document.querySelector('[data-testid=frame-list]').focus()")
+        .await;
+    press(&page, "ArrowDown").await;
+    until(
+        &page,
+        "[data-testid=frame-detail] h2",
+        "/response/.test($.textContent)",
+    )
+    .await;
+    look(&page, "paste").await;
+
+    paste(&page, "03 03 0B BC 00 02 06 29").await;
+    until(
+        &page,
+        "[data-testid=found]",
+        "/, 1 frame/.test($.textContent)",
+    )
+    .await;
+    assert_eq!(count(&page, "[data-testid=program]").await, 0);
+    page.assert_clean().await;
+}
+
+/// The family decides about the bits of command 48, and the list of devices offers the families.
+#[tokio::test]
+async fn the_family_names_the_status_bits() {
+    let server = Server::start(&[]);
+    let page = Page::open(&server.url("/#/decode")).await;
+    page.show(1440, 900, Scheme::Light).await;
+    // The worked frames R9 and R10.
+    paste(
+        &page,
+        "FF FF FF FF FF 82 AE DD 01 23 45 30 00 A6\n\
+         FF FF FF FF FF 86 AE DD 01 23 45 30 0B 00 90 02 00 02 00 A4 40 08 00 00 D5",
+    )
+    .await;
+    page.click("[data-testid=frame-row][data-index='1']").await;
+    page.wait_for("[data-path='command.48.byte_0']").await;
+    let families = page
+        .eval(
+            "return [...document.querySelectorAll('[data-testid=decode-device] option')]
+               .map(o => o.value)",
+        )
+        .await;
+    let wanted = [
+        "",
+        "rotork-cva",
+        "rotork-iq",
+        "rotork-cma",
+        "rotork-ck",
+        "rotork-si",
+    ];
+    assert_eq!(families, json!(wanted));
+    choose(&page, "decode-device", "rotork-iq").await;
+    until(
+        &page,
+        "[data-path='command.48.byte_0'] .tree-value",
+        "/Local control fault/i.test($.textContent)",
+    )
+    .await;
+    choose(&page, "decode-device", "rotork-cva").await;
+    until(
+        &page,
+        "[data-path='command.48.byte_0'] .tree-value",
+        "!/Local control fault/i.test($.textContent)",
+    )
+    .await;
+    page.assert_clean().await;
+}
+
+/// The samples: a handheld's session, a damaged stream whose causes are named, a gateway.
+#[tokio::test]
+async fn samples_show_what_they_promise() {
+    let server = Server::start(&[]);
+    let page = Page::open(&server.url("/#/decode?sample=hart-handheld")).await;
+    page.show(1440, 900, Scheme::Light).await;
+    until(
+        &page,
+        "[data-testid=found]",
+        "/28 frames/.test($.textContent)",
+    )
+    .await;
+    look(&page, "handheld").await;
+
+    choose(&page, "sample", "hart-damaged").await;
+    until(
+        &page,
+        "[data-testid=found]",
+        "/17 frames/.test($.textContent)",
+    )
+    .await;
+    let codes = "return [...new Set([...document.querySelectorAll('[data-testid=problem]')]
+        .map(p => p.dataset.code))]";
+    until(
+        &page,
+        "[data-testid=problem-count]",
+        "/6 errors/.test($.textContent)",
+    )
+    .await;
+    let seen = page.eval(codes).await;
+    assert!(
+        seen.as_array()
+            .is_some_and(|c| c.contains(&Value::from("start-missing"))),
+        "{seen}"
+    );
+    look(&page, "damaged").await;
+
+    choose(&page, "sample", "hart-ip").await;
+    until(
+        &page,
+        "[data-testid=found]",
+        "/12 frames/.test($.textContent)",
+    )
+    .await;
+    let framing = page.text("[data-testid=frame-row][data-index='0']").await;
+    assert!(framing.contains("Session initiate"), "{framing}");
+    look(&page, "ip").await;
+
+    // A framing can be forced, and taken back.
+    choose(&page, "decode-framing", "hart").await;
+    until(
+        &page,
+        "[data-testid=found]",
+        "!/12 frames/.test($.textContent)",
+    )
+    .await;
+    choose(&page, "decode-framing", "").await;
+    until(
+        &page,
+        "[data-testid=found]",
+        "/12 frames/.test($.textContent)",
+    )
+    .await;
+    page.click("[data-testid=clear]").await;
+    page.wait_for("[data-testid=sample-button]").await;
+    assert_eq!(count(&page, "[data-testid=program]").await, 0);
+    page.assert_clean().await;
+}
