@@ -3,10 +3,13 @@
 //! Every refusal names the file, the line and what to write instead.
 
 mod check;
+mod ddc;
 mod profile;
 mod raw;
 #[cfg(test)]
 mod tests;
+
+pub use ddc::{DdcConfig, DdcPorts};
 
 use shared::device::Device;
 use shared::dop::Profile;
@@ -81,16 +84,40 @@ pub enum LineConfig {
     },
     /// The built-in plant: its devices are simulated.
     Simulator,
+    /// A DDC-100 network, on one or two serial ports or simulated.
+    Ddc(Arc<DdcConfig>),
 }
 
 impl LineConfig {
     /// How frames are marked off.
     #[must_use]
-    pub const fn framing(&self) -> Framing {
+    pub fn framing(&self) -> Framing {
         match self {
             Self::Serial { framing, .. } => *framing,
+            Self::Ddc(ddc) => ddc.framing,
             Self::Tcp { .. } => Framing::Tcp,
             Self::RtuOverTcp { .. } | Self::Simulator => Framing::Rtu,
+        }
+    }
+}
+
+impl LineConfig {
+    /// The network, if it is one of DDC-100 units.
+    #[must_use]
+    pub const fn ddc(&self) -> Option<&Arc<DdcConfig>> {
+        match self {
+            Self::Ddc(ddc) => Some(ddc),
+            _ => None,
+        }
+    }
+
+    /// True if nothing of it is real.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        match self {
+            Self::Simulator => true,
+            Self::Ddc(ddc) => matches!(ddc.ports, DdcPorts::Simulated(_)),
+            _ => false,
         }
     }
 }
@@ -105,6 +132,7 @@ impl fmt::Display for LineConfig {
             Self::Tcp { host } => f.write_str(host),
             Self::RtuOverTcp { host } => write!(f, "{host}, RTU over TCP"),
             Self::Simulator => f.write_str("built-in simulator"),
+            Self::Ddc(ddc) => write!(f, "{ddc}"),
         }
     }
 }
@@ -256,48 +284,73 @@ impl Config {
         check::check(raw, beside).map_err(|check::Wrong { at, text }| wrong(at, text))
     }
 
-    /// What is served without a configuration: a plant of four valves that is alive.
+    /// The devices of a bus, in the order of the file.
+    pub fn on(&self, bus: &BusConfig) -> impl Iterator<Item = &DeviceConfig> {
+        let at = self.buses.iter().position(|b| b.name == bus.name);
+        self.devices.iter().filter(move |d| Some(d.bus) == at)
+    }
+
+    /// What is served without a configuration: a plant of four valves that is alive, and a loop of
+    /// field units whose cable breaks now and then.
     #[must_use]
     pub fn simulated() -> Self {
-        let device = |tag: &str, device: Device, unit, description: &str| DeviceConfig {
+        let on = |bus: usize, tag: &str, device: Device, unit, description: &str| DeviceConfig {
             tag: tag.into(),
             device,
-            bus: 0,
+            bus,
             unit,
             description: description.into(),
             profile: (device == Device::Dop).then(crate::sim::dop_profile),
         };
+        let mut devices = vec![
+            on(
+                0,
+                "XV-101",
+                Device::Icon3000v2,
+                1,
+                "Feed inlet, isolating valve",
+            ),
+            on(
+                0,
+                "FV-102",
+                Device::Icon3000v2,
+                2,
+                "Feed flow, control valve",
+            ),
+            on(
+                0,
+                "XV-201",
+                Device::Icon3000,
+                3,
+                "Tank 2 outlet, isolating valve",
+            ),
+            on(
+                0,
+                "MX-301",
+                Device::Dop,
+                4,
+                "Tank 3 inlet, isolating valve with diagnostics",
+            ),
+        ];
+        devices.extend(
+            ddc::SIMULATED
+                .iter()
+                .map(|(tag, device, unit, what)| on(1, tag, *device, *unit, what)),
+        );
         Self {
             listen: LISTEN,
             hosts: Vec::new(),
-            buses: vec![BusConfig {
-                name: "Simulated plant".into(),
-                line: LineConfig::Simulator,
-                timeout: check::TIMEOUT,
-                retries: check::RETRIES,
-                turnaround: Duration::ZERO,
-            }],
-            devices: vec![
-                device(
-                    "XV-101",
-                    Device::Icon3000v2,
-                    1,
-                    "Feed inlet, isolating valve",
-                ),
-                device("FV-102", Device::Icon3000v2, 2, "Feed flow, control valve"),
-                device(
-                    "XV-201",
-                    Device::Icon3000,
-                    3,
-                    "Tank 2 outlet, isolating valve",
-                ),
-                device(
-                    "MX-301",
-                    Device::Dop,
-                    4,
-                    "Tank 3 inlet, isolating valve with diagnostics",
-                ),
+            buses: vec![
+                BusConfig {
+                    name: "Simulated plant".into(),
+                    line: LineConfig::Simulator,
+                    timeout: check::TIMEOUT,
+                    retries: check::RETRIES,
+                    turnaround: Duration::ZERO,
+                },
+                ddc::simulated(),
             ],
+            devices,
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use crate::bus::board::Board;
 use crate::bus::recorder::Recorder;
-use crate::bus::{self, ClientId, Handle, Plug};
+use crate::bus::{self, ClientId, Handle, Plug, ddc};
 use crate::clock::Clock;
 use crate::config::{Config, DeviceConfig, LineConfig};
-use crate::sim::Actuators;
+use crate::sim::{self, Actuators};
 use shared::device::Device as Kind;
 use shared::proto::{self, ToPage, VERSION};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -17,6 +17,8 @@ pub struct Plant {
     clock: Clock,
     buses: Vec<(proto::Bus, Handle)>,
     devices: Vec<Device>,
+    /// DDC-100 networks by the name of their bus: the newest of each unit.
+    networks: Vec<(String, Board)>,
     board: Board,
     activity: watch::Sender<u64>,
     clients: AtomicU64,
@@ -39,7 +41,8 @@ impl Plant {
         let activity = watch::Sender::new(0);
         let board = Board::new(activity.clone());
         let mut devices = Vec::new();
-        let mut buses = Vec::new();
+        let mut buses: Vec<(proto::Bus, Handle)> = Vec::new();
+        let mut networks = Vec::new();
         for (index, bus) in config.buses.iter().enumerate() {
             let own: Vec<DeviceConfig> = config
                 .devices
@@ -48,6 +51,8 @@ impl Plant {
                 .cloned()
                 .collect();
             let simulated = bus.line == LineConfig::Simulator;
+            // A network with two ports is more than one line.
+            let first = buses.len();
             devices.extend(own.iter().enumerate().map(|(at, device)| Device {
                 info: proto::DeviceInfo {
                     tag: device.tag.clone(),
@@ -56,9 +61,22 @@ impl Plant {
                     unit: device.unit,
                     description: device.description.clone(),
                 },
-                bus: index,
+                bus: first,
                 at,
             }));
+            if let LineConfig::Ddc(ddc) = &bus.line {
+                let common = ddc::Common {
+                    clock,
+                    board: board.clone(),
+                    activity: activity.clone(),
+                };
+                let plugs = sim::ddc::plugs(ddc, &own, clock);
+                if let Some(network) = ddc::start(bus, ddc, &own, plugs, common) {
+                    buses.extend(network.lines);
+                    networks.push((bus.name.clone(), network.news));
+                }
+                continue;
+            }
             let info = proto::Bus {
                 name: bus.name.clone(),
                 line: bus.line.to_string(),
@@ -78,6 +96,7 @@ impl Plant {
             clock,
             buses,
             devices,
+            networks,
             board,
             activity,
             clients: AtomicU64::new(0),
@@ -140,6 +159,23 @@ impl Plant {
         let device = self.devices.iter().find(|d| d.info.tag == tag)?;
         let (_, handle) = self.buses.get(device.bus)?;
         Some((handle, device.at))
+    }
+
+    /// The newest of each unit of the DDC-100 network with this name.
+    #[must_use]
+    pub fn network(&self, name: &str) -> Option<&Board> {
+        let found = self.networks.iter().find(|(bus, _)| bus == name);
+        found.map(|(_, news)| news)
+    }
+
+    /// The tag of the device with this address on a bus.
+    #[must_use]
+    pub fn tag(&self, bus: &str, unit: u8) -> Option<&str> {
+        let found = self
+            .devices
+            .iter()
+            .find(|d| d.info.bus == bus && d.info.unit == unit);
+        found.map(|d| d.info.tag.as_str())
     }
 
     /// True if the device with this tag is declared as DOP.

@@ -2,6 +2,8 @@
 //!
 //! What the actuators do is in `shared::sim`; here are only their lines and their time.
 
+pub mod ddc;
+
 use crate::bus::timing::gap;
 use crate::clock::Clock;
 use crate::config::DeviceConfig;

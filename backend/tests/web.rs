@@ -117,6 +117,8 @@ async fn a_watched_device_is_seen_in_the_captures() {
                     decoded += 1;
                 }
             }
+            // The loop of field units is polled whether anybody watches or not.
+            ToPage::Device { tag, .. } if tag.starts_with("MOV") || tag.starts_with("IO") => {}
             ToPage::Device { tag, outcome, .. } => {
                 assert_eq!((tag.as_str(), outcome), ("XV-101", Outcome::Ok));
                 states += 1;

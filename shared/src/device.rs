@@ -166,6 +166,19 @@ impl Device {
         }
     }
 
+    /// True for a field unit of a DDC-100 network.
+    #[must_use]
+    pub const fn is_ddc(self) -> bool {
+        matches!(
+            self,
+            Self::Ddc100Mx
+                | Self::Ddc100MxB
+                | Self::Ddc100Uec
+                | Self::Ddc100Clamshell
+                | Self::Ddc100Io
+        )
+    }
+
     /// True for the ICON3000 family.
     #[must_use]
     pub const fn is_icon(self) -> bool {

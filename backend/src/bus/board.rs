@@ -47,7 +47,11 @@ impl Board {
 
     /// Writes a state; the one before is gone.
     pub fn post(&self, slot: usize, message: &ToPage) {
-        let text = encode(message);
+        self.post_text(slot, encode(message));
+    }
+
+    /// The same for a message that is encoded already.
+    pub fn post_text(&self, slot: usize, text: Utf8Bytes) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         state.version += 1;
         let version = state.version;

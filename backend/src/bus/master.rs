@@ -72,6 +72,17 @@ impl Master {
         self.stray
     }
 
+    /// When the last byte passed, in either direction.
+    #[must_use]
+    pub const fn last(&self) -> Instant {
+        self.last
+    }
+
+    /// Another port of the same cable was busy until then: this one keeps the same silence.
+    pub fn busy_until(&mut self, moment: Instant) {
+        self.last = self.last.max(moment);
+    }
+
     /// Listens while there is nothing to ask. Ends only if the line is lost. Safe to cancel.
     pub async fn listen(&mut self) -> io::Error {
         loop {

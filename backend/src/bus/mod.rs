@@ -4,6 +4,7 @@ mod actor;
 mod alarm;
 mod answer;
 pub mod board;
+pub mod ddc;
 mod dop;
 pub mod gate;
 pub mod master;
@@ -117,6 +118,12 @@ impl Report {
             pdu: None,
             code: None,
         }
+    }
+
+    /// It is not allowed, or makes no sense.
+    #[must_use]
+    pub fn refused(text: String) -> Self {
+        Self::failed(Outcome::Refused, text)
     }
 
     /// The line is not there.

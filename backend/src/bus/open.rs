@@ -69,7 +69,7 @@ impl Line {
                 });
                 Box::new(near)
             }
-            (LineConfig::Simulator, Plug::Configured) => {
+            (LineConfig::Simulator, Plug::Configured) | (LineConfig::Ddc(_), _) => {
                 return Err(io::Error::other("nothing is simulated here"));
             }
         };
@@ -132,6 +132,21 @@ impl Line {
         match self {
             Self::Serial(master) => master.listen().await,
             Self::Tcp(_) => std::future::pending().await,
+        }
+    }
+
+    /// When the last byte passed, in either direction.
+    pub fn last(&self) -> Option<Instant> {
+        match self {
+            Self::Serial(master) => Some(master.last()),
+            Self::Tcp(_) => None,
+        }
+    }
+
+    /// Another port of the same cable was busy until then: this one keeps the same silence.
+    pub fn busy_until(&mut self, moment: Instant) {
+        if let Self::Serial(master) = self {
+            master.busy_until(moment);
         }
     }
 

@@ -9,6 +9,7 @@ use shared::capture::Micros;
 use shared::proto::{ToPage, Way};
 use shared::render::hex;
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
@@ -26,6 +27,14 @@ pub struct Recorder {
     clock: Clock,
     ring: Arc<Mutex<Ring>>,
     activity: watch::Sender<u64>,
+    whole: Option<Whole>,
+}
+
+/// The recorder of a network with several ports, and whether this port is the one that is driven.
+#[derive(Clone, Debug)]
+struct Whole {
+    recorder: Box<Recorder>,
+    driven: Arc<AtomicBool>,
 }
 
 #[derive(Debug, Default)]
@@ -60,11 +69,38 @@ impl Recorder {
             clock,
             ring: Arc::default(),
             activity,
+            whole: None,
         }
+    }
+
+    /// A recorder of one port of a network whose master drives one port at a time. While `driven`
+    /// is true, what passes is recorded for the network as well; what only comes round the cable is
+    /// not.
+    #[must_use]
+    pub fn of_port(&self, name: &str, driven: Arc<AtomicBool>) -> Self {
+        Self {
+            whole: Some(Whole {
+                recorder: Box::new(self.clone()),
+                driven,
+            }),
+            ..Self::new(name, self.clock, self.activity.clone())
+        }
+    }
+
+    /// The recorder of the network, if this port is driven.
+    fn whole(&self) -> Option<&Self> {
+        let whole = self.whole.as_ref()?;
+        whole
+            .driven
+            .load(Ordering::Relaxed)
+            .then_some(&*whole.recorder)
     }
 
     /// Bytes went out. `ends` is true if they complete a frame.
     pub fn sent(&self, bytes: &[u8], ends: bool) {
+        if let Some(whole) = self.whole() {
+            whole.sent(bytes, ends);
+        }
         let now = self.clock.now();
         let mut ring = self.lock();
         self.close(&mut ring, false);
@@ -73,6 +109,9 @@ impl Recorder {
 
     /// Bytes came in.
     pub fn received(&self, bytes: &[u8]) {
+        if let Some(whole) = self.whole() {
+            whole.received(bytes);
+        }
         let now = self.clock.now();
         let mut ring = self.lock();
         ring.pending.extend_from_slice(bytes);
@@ -86,6 +125,9 @@ impl Recorder {
 
     /// The line has been silent since the last byte.
     pub fn silence(&self) {
+        if let Some(whole) = self.whole() {
+            whole.silence();
+        }
         let mut ring = self.lock();
         self.close(&mut ring, true);
     }
@@ -218,6 +260,42 @@ mod tests {
         assert_eq!((next.missed, captures(&next)[0].0), (0, pulled.last + 1));
         let none = recorder.after(5000, 10);
         assert_eq!((none.missed, none.messages.len(), none.last), (0, 0, 5000));
+    }
+
+    #[tokio::test]
+    async fn a_network_records_what_passes_on_the_port_that_is_driven() {
+        let network = recorder();
+        let driven = [
+            Arc::new(AtomicBool::new(true)),
+            Arc::new(AtomicBool::new(false)),
+        ];
+        let one = network.of_port("a, port 1", Arc::clone(&driven[0]));
+        let two = network.of_port("a, port 2", Arc::clone(&driven[1]));
+        one.sent(&[1], true);
+        // The same bytes come out of the other end of the loop.
+        two.received(&[1]);
+        two.silence();
+        one.received(&[2]);
+        two.received(&[2]);
+        two.silence();
+        one.silence();
+        driven[0].store(false, Ordering::Relaxed);
+        driven[1].store(true, Ordering::Relaxed);
+        two.sent(&[3], true);
+        let seen = |recorder: &Recorder| {
+            let captures = captures(&recorder.after(0, 100)).into_iter();
+            captures.map(|c| (c.1, c.3)).collect::<Vec<_>>()
+        };
+        let of = |way, hex: &str| (way, hex.to_owned());
+        assert_eq!(
+            seen(&network),
+            [of(Way::Tx, "01"), of(Way::Rx, "02"), of(Way::Tx, "03")]
+        );
+        assert_eq!(seen(&one), [of(Way::Tx, "01"), of(Way::Rx, "02")]);
+        assert_eq!(
+            seen(&two),
+            [of(Way::Rx, "01"), of(Way::Rx, "02"), of(Way::Tx, "03")]
+        );
     }
 
     #[tokio::test]

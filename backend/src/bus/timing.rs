@@ -49,6 +49,13 @@ impl Timing {
                 _ => (*baud, mode.bits(), STALL),
             },
             LineConfig::Simulator => (SIMULATED_BAUD, 11, STALL),
+            LineConfig::Ddc(ddc) => {
+                let stall = match ddc.framing {
+                    shared::frame::Framing::Ascii => ASCII_STALL,
+                    _ => STALL,
+                };
+                (ddc.baud, ddc.mode.bits(), stall)
+            }
             LineConfig::Tcp { .. } | LineConfig::RtuOverTcp { .. } => (0, 0, NETWORK_STALL),
         };
         let gap = gap(baud);

@@ -33,7 +33,9 @@ pub fn fault(fault: &Fault, bus: &BusConfig, unit: u8, tries: u8) -> String {
             LineConfig::Tcp { host } | LineConfig::RtuOverTcp { host } => {
                 format!("no answer within {ms} ms{tries}; check that {host} knows a unit {unit}")
             }
-            LineConfig::Simulator => format!("no answer within {ms} ms{tries}"),
+            LineConfig::Simulator | LineConfig::Ddc(_) => {
+                format!("no answer within {ms} ms{tries}")
+            }
         },
         Fault::Closed => format!(
             "the other side closed the connection{tries}; check whether it takes another client"
@@ -76,7 +78,7 @@ pub fn down(line: &LineConfig, error: &io::Error) -> String {
     match line {
         LineConfig::Serial { port, .. } => serial(port, error),
         LineConfig::Tcp { host } | LineConfig::RtuOverTcp { host } => network(host, error),
-        LineConfig::Simulator => format!("the simulator ended: {error}"),
+        LineConfig::Simulator | LineConfig::Ddc(_) => format!("the simulator ended: {error}"),
     }
 }
 

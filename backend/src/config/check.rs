@@ -1,6 +1,6 @@
 //! From what is written to what is meant.
 
-use super::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, profile, raw};
+use super::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, ddc, profile, raw};
 use shared::device::Device;
 use shared::frame::Framing;
 use std::ops::RangeInclusive;
@@ -29,7 +29,7 @@ pub(super) struct Wrong {
     pub text: String,
 }
 
-fn wrong<T, V>(value: &Spanned<V>, text: impl Into<String>) -> Result<T, Wrong> {
+pub(super) fn wrong<T, V>(value: &Spanned<V>, text: impl Into<String>) -> Result<T, Wrong> {
     Err(Wrong {
         at: value.span().start,
         text: text.into(),
@@ -68,6 +68,9 @@ pub(super) fn check(file: raw::File, beside: &Path) -> Result<Config, Wrong> {
         let device = self::device(device.into_inner(), &config, beside)?;
         config.devices.push(device);
     }
+    for (bus, raw) in config.buses.iter().zip(&file.bus) {
+        ddc::network(bus, raw.get_ref(), &config)?;
+    }
     Ok(config)
 }
 
@@ -92,30 +95,19 @@ fn bus(bus: &Spanned<raw::Bus>, config: &Config) -> Result<BusConfig, Wrong> {
             host: host(bus, 4001)?,
         },
         "simulator" => LineConfig::Simulator,
+        "ddc100" | "ddc100-simulator" => {
+            strays(raw, kind)?;
+            return ddc::bus(bus, kind == "ddc100-simulator");
+        }
         other => {
             let text = format!(
-                "`kind` is \"{other}\"; a bus is \"rtu\", \"ascii\", \"tcp\", \"rtu-over-tcp\" or \"simulator\""
+                "`kind` is \"{other}\"; a bus is \"rtu\", \"ascii\", \"tcp\", \"rtu-over-tcp\", \
+                 \"ddc100\", \"ddc100-simulator\" or \"simulator\""
             );
             return wrong(&raw.kind, text);
         }
     };
-    // A key of another kind is a mistake, not a default.
-    let serial = matches!(line, LineConfig::Serial { .. });
-    let network = matches!(line, LineConfig::Tcp { .. } | LineConfig::RtuOverTcp { .. });
-    let strays = [
-        (raw.port.as_ref().map(Spanned::span), serial, "port"),
-        (raw.baud.as_ref().map(Spanned::span), serial, "baud"),
-        (raw.mode.as_ref().map(Spanned::span), serial, "mode"),
-        (raw.host.as_ref().map(Spanned::span), network, "host"),
-    ];
-    for (span, belongs, key) in strays {
-        if let (Some(span), false) = (span, belongs) {
-            return Err(Wrong {
-                at: span.start,
-                text: format!("a bus of kind \"{kind}\" has no `{key}`; remove the line"),
-            });
-        }
-    }
+    strays(raw, kind)?;
     let timeout = number(raw.timeout_ms.as_ref(), "timeout_ms", 20..=60_000)?;
     let retries = number(raw.retries.as_ref(), "retries", 0..=10)?;
     let turnaround = number(raw.turnaround_ms.as_ref(), "turnaround_ms", 0..=1_000)?;
@@ -128,8 +120,50 @@ fn bus(bus: &Spanned<raw::Bus>, config: &Config) -> Result<BusConfig, Wrong> {
     })
 }
 
+/// A key of another kind is a mistake, not a default.
+fn strays(raw: &raw::Bus, kind: &str) -> Result<(), Wrong> {
+    let serial = matches!(kind, "rtu" | "ascii");
+    let network = matches!(kind, "tcp" | "rtu-over-tcp");
+    let ddc = matches!(kind, "ddc100" | "ddc100-simulator");
+    let strays = [
+        (raw.port.as_ref(), serial || kind == "ddc100", "port"),
+        (raw.port2.as_ref(), kind == "ddc100", "port2"),
+        (raw.mode.as_ref(), serial || ddc, "mode"),
+        (raw.host.as_ref(), network, "host"),
+        (raw.shape.as_ref(), ddc, "shape"),
+        (raw.framing.as_ref(), ddc, "framing"),
+        (raw.registers.as_ref(), ddc, "registers"),
+        (
+            raw.faults.as_ref().and_then(|f| f.first()),
+            kind == "ddc100-simulator",
+            "faults",
+        ),
+    ];
+    let strays = strays.map(|(value, belongs, key)| (value.map(Spanned::span), belongs, key));
+    let numbers = [
+        (raw.baud.as_ref(), serial || ddc, "baud"),
+        (raw.turn_ms.as_ref(), ddc, "turn_ms"),
+        (raw.turnaround_ms.as_ref(), !ddc, "turnaround_ms"),
+    ];
+    let numbers = numbers.map(|(value, belongs, key)| (value.map(Spanned::span), belongs, key));
+    for (span, belongs, key) in strays.into_iter().chain(numbers) {
+        if let (Some(span), false) = (span, belongs) {
+            let instead = if key == "turnaround_ms" {
+                "write `turn_ms`"
+            } else {
+                "remove the line"
+            };
+            return Err(Wrong {
+                at: span.start,
+                text: format!("a bus of kind \"{kind}\" has no `{key}`; {instead}"),
+            });
+        }
+    }
+    Ok(())
+}
+
 /// An integer within its range, if it is there.
-fn number(
+pub(super) fn number(
     value: Option<&Spanned<i64>>,
     key: &str,
     range: RangeInclusive<u32>,
@@ -277,12 +311,24 @@ fn device(raw: raw::Device, config: &Config, beside: &Path) -> Result<DeviceConf
         );
         return wrong(&raw.unit, text);
     }
-    let simulated = config
-        .buses
-        .get(bus)
-        .is_some_and(|b| b.line == LineConfig::Simulator);
-    if simulated && device == Device::None {
-        let text = "the simulator can be an \"icon3000v2\", an \"icon3000\" or a \"dop\" only";
+    let line = config.buses.get(bus).map(|b| &b.line);
+    let simulated = line == Some(&LineConfig::Simulator);
+    if simulated && !(device.is_icon() || device.is_dop()) {
+        let mut text =
+            "the simulator can be an \"icon3000v2\", an \"icon3000\" or a \"dop\" only".to_owned();
+        if device.is_ddc() {
+            text += "; for field units write a bus of kind = \"ddc100-simulator\"";
+        }
+        return wrong(&raw.kind, text);
+    }
+    if line.is_some_and(|l| l.ddc().is_some()) && !device.is_ddc() {
+        let kinds = Device::ALL.iter().filter(|d| d.is_ddc());
+        let list: Vec<String> = kinds.map(|d| format!("\"{}\"", d.key())).collect();
+        let text = format!(
+            "`kind` is \"{}\"; on the DDC-100 network \"{name}\" it is one of {}",
+            device.key(),
+            list.join(", ")
+        );
         return wrong(&raw.kind, text);
     }
     let profile = match &raw.profile {

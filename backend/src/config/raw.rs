@@ -37,6 +37,12 @@ pub(super) struct Bus {
     pub timeout_ms: Option<Spanned<i64>>,
     pub retries: Option<Spanned<i64>>,
     pub turnaround_ms: Option<Spanned<i64>>,
+    pub port2: Option<Spanned<String>>,
+    pub shape: Option<Spanned<String>>,
+    pub framing: Option<Spanned<String>>,
+    pub registers: Option<Spanned<String>>,
+    pub turn_ms: Option<Spanned<i64>>,
+    pub faults: Option<Vec<Spanned<String>>>,
 }
 
 /// `[[device]]`.

@@ -212,7 +212,7 @@ fn the_default_plant_is_simulated() {
     let config = Config::simulated();
     assert_eq!(config.devices[0].tag, "XV-101");
     assert_eq!(config.devices[0].device, Device::Icon3000v2);
-    assert!(config.buses.iter().all(|b| b.line == LineConfig::Simulator));
+    assert!(config.buses.iter().all(|b| b.line.is_simulated()));
 }
 
 #[test]
@@ -227,4 +227,141 @@ fn modes_have_their_bits() {
         assert_eq!(Mode::parse(text).map(Mode::bits), Some(bits), "{text}");
     }
     assert_eq!(Mode::parse("9N1"), None);
+}
+
+const LOOP: &str =
+    "kind = \"ddc100\"\nshape = \"loop\"\nport = \"/dev/ttyUSB0\"\nport2 = \"/dev/ttyUSB1\"";
+const MX: &str = "kind = \"ddc100-mx\"\nbus = \"a\"\nunit = 250";
+
+#[test]
+fn a_network_has_the_defaults_of_its_guide() {
+    let config = with(LOOP, MX).unwrap();
+    let bus = &config.buses[0];
+    let ddc = bus.line.ddc().unwrap();
+    // LMAIM4019-00: table 3.1, section 4.3, section 3.2.3.
+    assert_eq!(bus.line.to_string(), "/dev/ttyUSB0, /dev/ttyUSB1 9600 8N1");
+    assert_eq!(ddc.framing, Framing::Rtu);
+    assert_eq!((ddc.start, ddc.count), (7, 6));
+    assert_eq!(ddc.paths(), ["/dev/ttyUSB0", "/dev/ttyUSB1"]);
+    assert!(bus.turnaround > Duration::from_millis(20));
+    assert!(bus.timeout > Duration::from_millis(200) && bus.retries <= 3);
+    let all = format!(
+        "{LOOP}\nframing = \"ascii\"\nbaud = 1200\nmode = \"8E1\"\nregisters = \"1-56\"\nturn_ms = 49\n\
+         timeout_ms = 201\nretries = 0"
+    );
+    let config = with(&all, MX).unwrap();
+    let ddc = config.buses[0].line.ddc().unwrap();
+    assert_eq!((ddc.framing, ddc.baud), (Framing::Ascii, 1200));
+    assert_eq!((ddc.start, ddc.count), (0, 56));
+    let single = "kind = \"ddc100\"\nshape = \"single-ended\"\nport = \"p\"";
+    let config = with(single, MX).unwrap();
+    assert_eq!(config.buses[0].line.ddc().unwrap().paths(), ["p"]);
+    let simulated = "kind = \"ddc100-simulator\"\nshape = \"loop\"\nfaults = [\"break-1\", \"off-250 from 5 to 9 every 20\"]";
+    let config = with(simulated, MX).unwrap();
+    assert!(config.buses[0].line.is_simulated());
+    assert_eq!(config.buses[0].line.ddc().unwrap().paths().len(), 2);
+}
+
+#[test]
+fn refusals_about_networks_name_the_line_and_what_to_do() {
+    let check = |bus: &str, device: &str, line: usize, words: &[&str]| {
+        let text = with(bus, device).unwrap_err();
+        assert!(
+            text.starts_with(&format!("plant.toml, line {line}: ")),
+            "{text}"
+        );
+        for word in words {
+            assert!(text.contains(word), "{text} lacks {word}");
+        }
+    };
+    let wrong = |key: &str, words: &[&str]| check(&format!("{LOOP}\n{key}"), MX, 7, words);
+    wrong("baud = 38400", &["38400", "1200, 2400, 4800, 9600, 19200"]);
+    wrong("mode = \"7E1\"", &["7E1", "8N1"]);
+    wrong("framing = \"tcp\"", &["tcp", "\"rtu\" or \"ascii\""]);
+    wrong("turn_ms = 20", &["20", "21 to 49"]);
+    wrong("turn_ms = 50", &["50", "21 to 49"]);
+    wrong("timeout_ms = 200", &["200", "201 to"]);
+    wrong("retries = 4", &["4", "0 to 3"]);
+    wrong("turnaround_ms = 25", &["turnaround_ms", "turn_ms"]);
+    wrong("host = \"plc\"", &["host", "remove"]);
+    wrong("faults = [\"off-1\"]", &["faults", "remove"]);
+    for registers in ["9", "0-13", "9-57", "13-8", "a-b", "9-"] {
+        wrong(
+            &format!("registers = \"{registers}\""),
+            &[registers, "8-13"],
+        );
+    }
+    wrong("registers = \"10-13\"", &["at least 9", "10"]);
+    wrong("registers = \"1-9\"", &["at least 9", "10"]);
+    let network = "kind = \"ddc100\"\nport = \"p\"";
+    check(network, MX, 2, &["shape", "single-ended"]);
+    check(
+        &format!("{network}\nshape = \"ring\""),
+        MX,
+        5,
+        &["ring", "multi-drop"],
+    );
+    check(
+        &format!("{network}\nshape = \"loop\""),
+        MX,
+        2,
+        &["port2", "single-ended"],
+    );
+    let twice = format!("{network}\nshape = \"loop\"\nport2 = \"p\"");
+    check(&twice, MX, 6, &["same as `port`"]);
+    let drop = format!("{network}\nshape = \"multi-drop\"\nport2 = \"q\"");
+    check(&drop, MX, 6, &["remove `port2`", "loop"]);
+    check(
+        "kind = \"ddc100\"\nshape = \"loop\"",
+        MX,
+        2,
+        &["host port 1"],
+    );
+    let icon = "kind = \"icon3000\"\nbus = \"a\"\nunit = 1";
+    check(
+        LOOP,
+        icon,
+        9,
+        &["icon3000", "\"ddc100-mx\"", "\"ddc100-io\""],
+    );
+    check(RTU, &MX.replace("250", "251"), 9, &["1 to 250"]);
+    let rtu = "shape = \"loop\"";
+    check(&format!("{RTU}\n{rtu}"), ICON, 5, &["shape", "remove"]);
+    check("kind = \"simulator\"", MX, 6, &["ddc100-simulator"]);
+    let empty = parse(&format!("[[bus]]\nname = \"a\"\n{LOOP}")).unwrap_err();
+    assert!(
+        empty.contains("line 2") && empty.contains("no units"),
+        "{empty}"
+    );
+    let simulated = |faults: &str| {
+        format!("kind = \"ddc100-simulator\"\nshape = \"loop\"\nfaults = [\n{faults}]")
+    };
+    check(&simulated("\"melt-3\""), MX, 6, &["melt-3", "break-N"]);
+    check(
+        &simulated("\"break-1\",\n\"off-7\""),
+        MX,
+        7,
+        &["off-7", "no unit"],
+    );
+    check(&simulated("\"break-2\""), MX, 6, &["break-2", "1 units"]);
+}
+
+#[test]
+fn the_plant_without_a_configuration_has_a_network_that_can_be() {
+    let config = Config::simulated();
+    let bus = config
+        .buses
+        .iter()
+        .find(|b| b.line.ddc().is_some())
+        .unwrap();
+    let ddc = bus.line.ddc().unwrap();
+    let units: Vec<_> = config.on(bus).cloned().collect();
+    assert_eq!(units.len(), 12);
+    let setup = crate::bus::ddc::setup(bus, ddc, &units).unwrap();
+    assert_eq!(setup.problems(), []);
+    let DdcPorts::Simulated(faults) = &ddc.ports else {
+        panic!("it is simulated");
+    };
+    let clock = crate::clock::Clock::start();
+    assert!(crate::sim::ddc::Network::new(ddc.shape, &units, faults, clock).is_ok());
 }

@@ -3,8 +3,10 @@
 //! A page has no queue here. It remembers how far it has come in the ring of each bus and on the
 //! board; when it can take more, it gets what followed. A page that takes nothing is let go.
 
+mod ddc;
 mod dop;
 
+use crate::bus::board::Board;
 use crate::bus::recorder::{Recorder, encode};
 use crate::bus::{ClientId, Command, Outlet};
 use crate::plant::Plant;
@@ -73,6 +75,7 @@ where
         dop_news: Outlet::new(dop_news),
         reads: 0,
         subscriptions: Vec::new(),
+        networks: Vec::new(),
         seen: 0,
     };
     if let Err(end) = greet(socket, plant).await {
@@ -112,7 +115,7 @@ where
             }
             Some(Event::Done(message)) => {
                 page.reads = page.reads.saturating_sub(1);
-                messages.extend(message.as_ref().map(encode));
+                messages.extend(message);
             }
             Some(Event::Objects(text)) => messages.extend(text),
             Some(Event::Tick) => {
@@ -138,7 +141,7 @@ enum Event {
     /// The page said something; `None`: it is gone.
     Heard(Option<Message>),
     /// A read is over.
-    Done(Option<ToPage>),
+    Done(Option<Utf8Bytes>),
     /// News about diagnostic objects.
     Objects(Option<Utf8Bytes>),
     /// There is something new; false: there never will be.
@@ -202,13 +205,23 @@ where
 struct Page<'a> {
     plant: &'a Plant,
     client: ClientId,
-    done: mpsc::Sender<ToPage>,
+    done: mpsc::Sender<Utf8Bytes>,
     /// Takes the news about diagnostic objects.
     dop_news: Outlet,
     /// Reads under way.
     reads: usize,
     subscriptions: Vec<Subscription>,
+    /// DDC-100 networks that the page follows.
+    networks: Vec<Followed>,
     /// Version of the board that it has seen.
+    seen: u64,
+}
+
+/// A DDC-100 network of which the page gets the newest.
+struct Followed {
+    bus: String,
+    news: Board,
+    /// Version of the news that it has seen.
     seen: u64,
 }
 
@@ -225,6 +238,11 @@ impl Page<'_> {
     fn news(&mut self) -> Vec<Utf8Bytes> {
         let (mut messages, seen) = self.plant.board().news(self.seen);
         self.seen = seen;
+        for network in &mut self.networks {
+            let (news, seen) = network.news.news(network.seen);
+            network.seen = seen;
+            messages.extend(news);
+        }
         for subscription in &mut self.subscriptions {
             let pulled = subscription.recorder.after(subscription.last, BATCH);
             if pulled.missed > 0 {
@@ -255,11 +273,11 @@ impl Page<'_> {
                 ))));
             }
         };
-        Ok(self.obey(message).await.map(|answer| encode(&answer)))
+        Ok(self.obey(message).await)
     }
 
-    async fn obey(&mut self, message: ToBackend) -> Option<ToPage> {
-        match message {
+    async fn obey(&mut self, message: ToBackend) -> Option<Utf8Bytes> {
+        let answer = match message {
             ToBackend::Hello { .. } => None,
             ToBackend::Subscribe { bus, after } => self.subscribe(bus, after),
             ToBackend::Unsubscribe { bus } => {
@@ -273,10 +291,12 @@ impl Page<'_> {
                 period_ms,
             } => self.watch(&device, &blocks, period_ms).await,
             ToBackend::Dop(ask) => self.dop(ask).await,
-            ToBackend::Hart(_) | ToBackend::Ddc(_) | ToBackend::Icon(_) => Some(ToPage::Refused {
+            ToBackend::Ddc(ask) => return self.ddc(ask).await,
+            ToBackend::Hart(_) | ToBackend::Icon(_) => Some(ToPage::Refused {
                 text: "This program does not serve that yet.".into(),
             }),
-        }
+        };
+        answer.as_ref().map(encode)
     }
 
     fn subscribe(&mut self, bus: String, after: Option<u64>) -> Option<ToPage> {
@@ -324,11 +344,11 @@ impl Page<'_> {
         let reply = Box::new(move |report: crate::bus::Report| {
             // There is room: no more reads are under way than the channel holds. The page may be
             // gone, though.
-            let _gone = sender.try_send(ToPage::Done {
+            let _gone = sender.try_send(encode(&ToPage::Done {
                 id,
                 outcome: report.outcome,
                 text: report.text,
-            });
+            }));
         });
         let command = Command::Read {
             device,
