@@ -21,7 +21,7 @@ pub struct Cell {
 }
 
 /// The last words of a device, filled from its answers.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Image {
     cells: BTreeMap<(Table, u16), Cell>,
 }
@@ -79,7 +79,15 @@ impl Image {
         Some((table, start, count))
     }
 
-    fn set(&mut self, table: Table, address: Address, word: u16, at: Micros) {
+    /// Every word and bit with its place, by table and address.
+    pub fn iter(&self) -> impl Iterator<Item = (Table, Address, &Cell)> {
+        self.cells
+            .iter()
+            .map(|((table, address), cell)| (*table, Address::new(*address), cell))
+    }
+
+    /// Notes a word or bit.
+    pub fn set(&mut self, table: Table, address: Address, word: u16, at: Micros) {
         let cell = self.cells.entry((table, address.get())).or_insert(Cell {
             word,
             at,

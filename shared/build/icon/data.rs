@@ -12,6 +12,7 @@ pub struct Data {
     pub codes: Vec<(At, Code)>,
     pub readings: Vec<(At, Reading)>,
     pub health: Vec<(At, Health)>,
+    pub mirrors: Vec<(At, Mirror)>,
 }
 
 impl Data {
@@ -110,4 +111,14 @@ pub struct Health {
     pub status: String,
     pub reason: String,
     pub check: String,
+}
+
+/// A place that shows the value of a holding register once more, or one bit of it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mirror {
+    pub table: String,
+    pub address: u16,
+    pub home: u16,
+    pub bit: Option<u8>,
 }

@@ -6,7 +6,7 @@ use std::fmt::{self, Write};
 use super::data::{Code, Data, Field, File};
 use super::rules::STATUS;
 use crate::emit::{doc_name, screaming};
-use crate::types::{Device, Doc};
+use crate::types::{Device, Doc, TABLES};
 
 /// The document that all of it is from.
 const DOC: &str = "icon-mrt";
@@ -20,6 +20,7 @@ pub fn emit(data: &Data, device: &Device, docs: &[Doc]) -> String {
     let _ = layouts(data, device, docs, &mut out);
     let _ = files(data, device, docs, &mut out);
     let _ = health(data, device, &mut out);
+    let _ = mirrors(data, &mut out);
     out
 }
 
@@ -248,6 +249,25 @@ fn health(data: &Data, device: &Device, out: &mut String) -> fmt::Result {
             status.map_or("Failure", |s| s.1),
             line.reason,
             line.check,
+        )?;
+    }
+    writeln!(out, "];")
+}
+
+fn mirrors(data: &Data, out: &mut String) -> fmt::Result {
+    writeln!(
+        out,
+        "/// Places that show the value of a holding register once more (reading E44).\n\
+         pub static MIRRORS: [Mirror; {}] = [",
+        data.mirrors.len()
+    )?;
+    for (_, m) in &data.mirrors {
+        let table = TABLES.iter().find(|t| t.0 == m.table).map_or("", |t| t.1);
+        writeln!(
+            out,
+            "    Mirror {{ table: Table::{table}, address: Address::new({}), \
+             home: Address::new({}), bit: {:?} }},",
+            m.address, m.home, m.bit
         )?;
     }
     writeln!(out, "];")

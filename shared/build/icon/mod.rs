@@ -1,4 +1,4 @@
-//! `data/icon3000/record_*.csv` and `health.csv` → records → rules → `icon3000.rs`.
+//! `data/icon3000/record_*.csv`, `mirrors.csv` and `health.csv` → records → rules → `icon3000.rs`.
 
 mod data;
 mod emit;
@@ -22,6 +22,7 @@ pub fn read(root: &Path, problems: &mut Vec<Problem>) -> io::Result<Data> {
         fields: table(&folder.join("record_fields.csv"), problems)?,
         codes: table(&folder.join("record_enums.csv"), problems)?,
         readings: table(&folder.join("record_readings.csv"), problems)?,
+        mirrors: table(&folder.join("mirrors.csv"), problems)?,
         health: table(&folder.join("health.csv"), problems)?,
     })
 }

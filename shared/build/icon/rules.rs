@@ -11,12 +11,13 @@
 //! | I07 | a log begins with its number of entries |
 //! | I08 | every alarm and warning, as bit and as code, has one line in the health list, and lines name what exists |
 //! | I09 | no blanks around texts; reasons and checks are not empty |
+//! | I10 | a mirror and its home are values of the map, of one type and length, or a bit of bits |
 
 use std::collections::BTreeSet;
 
 use super::data::{Data, Field};
 use crate::rules::Findings;
-use crate::types::{At, Device, Problem, UNITS};
+use crate::types::{At, Device, Problem, Row, UNITS};
 
 /// Types and the words of one value; `None` for any number.
 pub const KINDS: [(&str, Option<u16>); 7] = [
@@ -54,6 +55,7 @@ pub fn check(data: &Data, device: &Device) -> Vec<Problem> {
     }
     readings(data, device, &mut found);
     health(data, device, &mut found);
+    mirrors(data, device, &mut found);
     found.into()
 }
 
@@ -249,5 +251,28 @@ fn health(data: &Data, device: &Device, found: &mut Findings) {
             let there = seen.contains(&(&member.set, &member.key));
             found.unless(there, "I08", &member.at, "has no line in health.csv");
         }
+    }
+}
+
+/// I10.
+fn mirrors(data: &Data, device: &Device, found: &mut Findings) {
+    // A model may have something else at the address of another.
+    let rows = |table: &str, address: u16| -> Vec<&Row> {
+        device
+            .rows
+            .iter()
+            .filter(|r| device.table_of(r) == table && r.address == address)
+            .collect()
+    };
+    for (at, mirror) in &data.mirrors {
+        let home = rows("holding", mirror.home);
+        let fits = rows(&mirror.table, mirror.address).iter().any(|copy| {
+            home.iter().any(|home| match mirror.bit {
+                Some(_) => home.kind.key == "bits" && copy.kind.key == "bool",
+                None => copy.kind.key == home.kind.key && copy.words == home.words,
+            })
+        });
+        let text = "mirror and home are not of one type and length";
+        found.unless(fits, "I10", at, text);
     }
 }

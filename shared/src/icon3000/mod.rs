@@ -14,16 +14,23 @@
 //!
 //! Source: VCIOM-16345-EN, section 8.11, with the readings of its manual.
 
+pub mod collect;
+pub mod counters;
+pub mod identity;
 pub mod model;
 pub mod plan;
 pub mod read;
 pub mod records;
+pub mod say;
+pub mod snapshot;
 pub(crate) mod tree;
 
 #[cfg(test)]
 mod tests;
 
+pub use collect::Collector;
 pub use model::{FILES, Field, File, Layout};
 pub use plan::{FileRead, Span};
 pub use read::{Entry, Item, Log};
 pub use records::{Files, Records};
+pub use snapshot::Snapshot;

@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 
+use crate::address::{Address, Table};
 pub use crate::dop::profile::Ne107;
 use crate::map::row::{Member, Reading, Set, Settled, Source, Trust};
 use crate::scale::Scale;
@@ -273,4 +274,31 @@ pub struct Meaning {
     pub reason: &'static str,
     /// What to check.
     pub check: &'static str,
+}
+
+/// A place that shows the value of a holding register once more, or one bit of it.
+///
+/// Reading E44: that they are one value is inferred from name and format.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Mirror {
+    /// Table of the copy.
+    pub table: Table,
+    /// First address of the copy.
+    pub address: Address,
+    /// First address of the holding register.
+    pub home: Address,
+    /// Which bit of it, for a coil or discrete input.
+    pub bit: Option<u8>,
+}
+
+impl Mirror {
+    /// The holding register that a place shows, and which bit of it; the place itself if it is no
+    /// mirror.
+    #[must_use]
+    pub fn home(table: Table, address: Address) -> (Table, Address, Option<u8>) {
+        MIRRORS
+            .iter()
+            .find(|m| m.table == table && m.address == address)
+            .map_or((table, address, None), |m| (Table::Holding, m.home, m.bit))
+    }
 }

@@ -1,0 +1,325 @@
+//! What changed in the files: entries and curves move when a new one comes, so they are told by
+//! what they hold and not by where they stand.
+
+use super::diff::{Change, Diff, OnlyOne};
+use super::{Snapshot, Sort};
+use crate::address::Table;
+use crate::icon3000::model::{FILES, File, Kind, Numbering};
+use crate::icon3000::read::{Entry, Item, Log};
+use crate::icon3000::say;
+use crate::map::row::Model;
+
+/// Compares the files of two snapshots, and the logs in the registers.
+pub(super) fn compare(first: &Snapshot, second: &Snapshot, out: &mut Diff) {
+    for (log, number) in [("alarm", 2), ("warning", 3)] {
+        // The file has what the registers have, and more.
+        let both = |s: &Snapshot| s.files.get(number).is_some();
+        if !(both(first) && both(second)) {
+            registers(first, second, log, out);
+        }
+    }
+    for file in &FILES {
+        match file.numbering {
+            Numbering::Curves => curves(first, second, file, out),
+            Numbering::Single | Numbering::Named(_) => {
+                for number in file.first..=file.last {
+                    one(first, second, file, number, out);
+                }
+            }
+        }
+    }
+}
+
+/// The five latest entries of a log in the registers: code, date and time of each.
+fn registers(first: &Snapshot, second: &Snapshot, log: &str, out: &mut Diff) {
+    let row = |at: u16, part: &str| {
+        let key = format!("{log}_log_{at}_{part}");
+        let map = Model::Icon3000v2.map();
+        map.by_key(Table::Holding, &key)
+    };
+    let list = |snapshot: &Snapshot| -> Vec<(u16, String)> {
+        (1..=5)
+            .filter_map(|at| {
+                let texts: Option<Vec<_>> = ["date", "time", "code"]
+                    .into_iter()
+                    .map(|part| say::row(&snapshot.image, row(at, part)?))
+                    .collect();
+                // Code 0 is no entry.
+                let code = row(at, "code").and_then(|r| snapshot.image.bytes(r))?;
+                (code != [0, 0]).then_some((at, texts?.join(", ")))
+            })
+            .collect()
+    };
+    let mut old = list(first);
+    let full = old.len() == 5;
+    let mut added = 0_usize;
+    let mut push = |at: u16, what: &str, was: String, now: String| {
+        let Some(row) = row(at, "code") else { return };
+        out.changes.push(Change {
+            sort: Sort::Log,
+            path: format!("holding.{}", row.address),
+            label: format!(
+                "{} {what}",
+                row.label.split(" - ").next().unwrap_or(row.label)
+            ),
+            was,
+            now,
+            also: Vec::new(),
+            source: Some(row.source),
+        });
+    };
+    for (at, text) in list(second) {
+        if let Some(found) = old.iter().position(|(_, t)| *t == text) {
+            old.remove(found);
+            continue;
+        }
+        added = added.saturating_add(1);
+        push(at, "(new)", String::new(), text);
+    }
+    if full && old.len() <= added {
+        old.clear();
+    }
+    for (at, text) in old {
+        push(at, "(gone)", text, String::new());
+    }
+}
+
+fn only_one(file: &File, number: u16, in_second: bool) -> OnlyOne {
+    OnlyOne {
+        path: format!("file.{number}"),
+        label: file.name(number).into_owned(),
+        in_second,
+    }
+}
+
+fn one(first: &Snapshot, second: &Snapshot, file: &'static File, number: u16, out: &mut Diff) {
+    let (was, now) = match (first.files.get(number), second.files.get(number)) {
+        (Some(was), Some(now)) => (was, now),
+        (None, None) => return,
+        (_, now) => return out.only_one.push(only_one(file, number, now.is_some())),
+    };
+    let (Some(was), Some(now)) = (Log::read(number, was), Log::read(number, now)) else {
+        // No layout: record by record.
+        for record in 0..super::super::records::RECORDS {
+            if let (Some(was), Some(now)) = (was.get(record), now.get(record))
+                && was != now
+            {
+                out.changes.push(change(
+                    file,
+                    format!("file.{number}.record[{record}]"),
+                    format!("{}, record {record}", file.label),
+                    format!("0x{was:04X}"),
+                    format!("0x{now:04X}"),
+                ));
+            }
+        }
+        return;
+    };
+    head(file, number, &was, &now, out);
+    if file.is_log() {
+        entries(file, number, &was, &now, out);
+    }
+}
+
+/// What sort a file is of.
+fn sort(file: &File) -> Sort {
+    match file.key {
+        "card_reports" => Sort::Identity,
+        "recorders_log" | "t_recorders_log" => Sort::Curve,
+        "limits" => Sort::Configuration,
+        _ if file.numbering == Numbering::Curves => Sort::Curve,
+        _ => Sort::Log,
+    }
+}
+
+fn change(file: &File, path: String, label: String, was: String, now: String) -> Change {
+    Change {
+        sort: sort(file),
+        path,
+        label,
+        was,
+        now,
+        also: Vec::new(),
+        source: Some(file.source),
+    }
+}
+
+/// The values before the entries. The number of entries follows from the entries.
+fn head(file: &'static File, number: u16, was: &Log, now: &Log, out: &mut Diff) {
+    for pair in was.head.iter().zip(&now.head) {
+        let (Some(was), Some(now)) = pair else {
+            continue;
+        };
+        let counted = file.is_log() && was.field.key == "count";
+        if was.words == now.words || counted || was.field.kind == Kind::Unused {
+            continue;
+        }
+        out.changes.push(change(
+            file,
+            format!("file.{number}.{}", was.field.key),
+            format!("{}: {}", file.name(number), was.label()),
+            was.text_with_unit(),
+            now.text_with_unit(),
+        ));
+    }
+}
+
+/// All words of an entry; `None` unless all were read.
+fn words(entry: &Entry) -> Option<Vec<u16>> {
+    entry
+        .items
+        .iter()
+        .map(|item| item.as_ref().map(|i| i.words.clone()))
+        .collect::<Option<Vec<_>>>()
+        .map(|words| words.concat())
+}
+
+/// An entry in a few words: its values without the unused ones.
+fn said(entry: &Entry) -> String {
+    let used = |i: &&Item| i.field.kind != Kind::Unused;
+    let texts: Vec<_> = entry
+        .items
+        .iter()
+        .flatten()
+        .filter(used)
+        .map(Item::text_with_unit)
+        .collect();
+    texts.join(", ")
+}
+
+fn entries(file: &'static File, number: u16, was: &Log, now: &Log, out: &mut Diff) {
+    let mut old: Vec<(Vec<u16>, &Entry)> = Vec::new();
+    let whole = |entry: &&Entry, stored: Option<u16>| stored.is_none_or(|n| entry.number <= n);
+    for entry in was.entries.iter().filter(|e| whole(e, was.stored)) {
+        old.extend(words(entry).map(|w| (w, entry)));
+    }
+    let mut added = 0_usize;
+    for entry in now.entries.iter().filter(|e| whole(e, now.stored)) {
+        let Some(words) = words(entry) else { continue };
+        if let Some(at) = old.iter().position(|(w, _)| *w == words) {
+            old.remove(at);
+            continue;
+        }
+        added = added.saturating_add(1);
+        out.changes.push(change(
+            file,
+            format!("file.{number}.entry[{}]", entry.number),
+            format!("{}: new {}", file.label, lower(file.item)),
+            String::new(),
+            said(entry),
+        ));
+    }
+    // What a full log lost at its end made room for what came.
+    let rolled = |last: u16| was.stored.is_none_or(|n| n == last);
+    if old.len() <= added && old.last().is_some_and(|(_, e)| rolled(e.number)) {
+        old.clear();
+    }
+    for (_, entry) in old {
+        out.changes.push(change(
+            file,
+            format!("file.{number}.entry[{}]", entry.number),
+            format!("{}: {} gone", file.label, lower(file.item)),
+            said(entry),
+            String::new(),
+        ));
+    }
+    let same = was.entries == now.entries;
+    if same
+        && let (Some(a), Some(b)) = (was.stored, now.stored)
+        && a != b
+    {
+        out.changes.push(change(
+            file,
+            format!("file.{number}.count"),
+            format!("{}: number of entries", file.label),
+            a.to_string(),
+            b.to_string(),
+        ));
+    }
+}
+
+/// `Alarm` within a sentence; `T-Recorder` and `PST Curve` stay as they are.
+fn lower(item: &str) -> String {
+    let mut chars = item.chars();
+    match (chars.next(), chars.next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            let rest = item.get(first.len_utf8()..).unwrap_or_default();
+            format!("{}{rest}", first.to_lowercase())
+        }
+        _ => item.to_owned(),
+    }
+}
+
+/// Curves move on when a new one is stored; the reference stays where it is.
+fn curves(first: &Snapshot, second: &Snapshot, file: &'static File, out: &mut Diff) {
+    let reference = file.first;
+    match (first.files.get(reference), second.files.get(reference)) {
+        (Some(was), Some(now)) if was != now => {
+            let said =
+                |records| Log::read(reference, records).map_or_else(String::new, |log| brief(&log));
+            out.changes.push(change(
+                file,
+                format!("file.{reference}"),
+                file.name(reference).into_owned(),
+                said(was),
+                said(now),
+            ));
+        }
+        (Some(_), None) | (None, Some(_)) => {
+            let in_second = second.files.get(reference).is_some();
+            out.only_one.push(only_one(file, reference, in_second));
+        }
+        _ => {}
+    }
+    let list = |snapshot: &Snapshot| -> Vec<(u16, Vec<u16>, String)> {
+        (file.first.saturating_add(1)..=file.last)
+            .filter_map(|number| {
+                let records = snapshot.files.get(number)?;
+                let log = Log::read(number, records).filter(|l| l.complete)?;
+                let words = records.iter().map(|(_, w)| w).collect();
+                Some((number, words, brief(&log)))
+            })
+            .collect()
+    };
+    let mut old = list(first);
+    let oldest = old.last().map(|(number, ..)| *number);
+    let mut added = 0_usize;
+    for (number, words, text) in list(second) {
+        if let Some(at) = old.iter().position(|(_, w, _)| *w == words) {
+            old.remove(at);
+            continue;
+        }
+        added = added.saturating_add(1);
+        let label = format!("{}: new curve", file.label);
+        let path = format!("file.{number}");
+        out.changes
+            .push(change(file, path, label, String::new(), text));
+    }
+    // As in a full log.
+    if old.len() <= added && old.last().map(|(number, ..)| *number) == oldest {
+        old.clear();
+    }
+    for (number, _, text) in old {
+        let label = format!("{}: curve gone", file.label);
+        let path = format!("file.{number}");
+        out.changes
+            .push(change(file, path, label, text, String::new()));
+    }
+}
+
+/// A curve in a few words: when, and its peak or its result.
+fn brief(log: &Log) -> String {
+    let time = log.get("time").map_or_else(String::new, Item::text);
+    let peak = log
+        .run("torque")
+        .into_iter()
+        .flatten()
+        .filter_map(|i| i.number().map(|n| (n.unsigned_abs(), i)))
+        .max_by_key(|(size, _)| *size);
+    match (log.get("result"), peak, log.get("direction")) {
+        (Some(result), ..) => format!("{time}, {}", result.text()),
+        (_, Some((_, peak)), _) => format!("{time}, peak {}", peak.text_with_unit()),
+        (_, _, Some(direction)) => format!("{time}, {}", direction.text()),
+        _ => time,
+    }
+}
