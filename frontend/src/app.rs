@@ -14,6 +14,7 @@ use crate::pages::decode::DecodePage;
 use crate::pages::device::DeviceRoute;
 use crate::pages::devices::DevicesPage;
 use crate::pages::dop::{DopPage, SnapshotsPage};
+use crate::pages::network::NetworkPage;
 use crate::pages::settings::SettingsPage;
 use crate::pages::traffic::TrafficPage;
 use crate::router::Router;
@@ -29,6 +30,7 @@ enum Page {
     Device,
     Dop,
     Snapshots,
+    Network,
     Traffic,
     Settings,
 }
@@ -60,6 +62,7 @@ pub fn App() -> impl IntoView {
         Screen::Device(..) => Page::Device,
         Screen::Dop(_) => Page::Dop,
         Screen::Snapshots(_) => Page::Snapshots,
+        Screen::Network(_) => Page::Network,
         Screen::Traffic(_) => Page::Traffic,
         Screen::Settings => Page::Settings,
     });
@@ -80,6 +83,7 @@ pub fn App() -> impl IntoView {
                 Page::Device => view! { <DeviceRoute/> }.into_any(),
                 Page::Dop => view! { <DopPage/> }.into_any(),
                 Page::Snapshots => view! { <SnapshotsPage/> }.into_any(),
+                Page::Network => view! { <NetworkPage/> }.into_any(),
                 Page::Traffic => view! { <TrafficPage/> }.into_any(),
                 Page::Settings => view! { <SettingsPage/> }.into_any(),
             }}

@@ -120,7 +120,7 @@ fn place(live: Live, router: Router, device: Option<&String>) -> Option<Place> {
     let mut route = router.route();
     let tab = match (route.screen, device) {
         (Screen::Device(tag, tab), Some(device)) if tag == *device => tab,
-        (Screen::Dop(tab) | Screen::Snapshots(tab), None) => tab,
+        (Screen::Dop(tab) | Screen::Snapshots(tab) | Screen::Network(tab), None) => tab,
         (Screen::Decode, None) => {
             let store: DecodeStore = expect_context();
             let device = store.device.get().map_or("", Device::key);

@@ -1,9 +1,14 @@
-//! The program of the DDC-100 networks.
+//! The program of the DDC-100 networks, loaded when somebody wants to see one.
+//!
+//! ```text
+//!  guest (place, news) ──► store ──► pages/ ──► markup/
+//!                             │                    ▲
+//!                             └──► state/ ─────────┘   net, cable, picture, table, unit
+//! ```
 
-use leptos::prelude::*;
+pub mod markup;
+pub mod pages;
+pub mod state;
+pub mod store;
 
-/// The program.
-#[component]
-pub fn Network() -> impl IntoView {
-    view! { <p class="empty">"DDC-100"</p> }
-}
+pub use pages::Network;

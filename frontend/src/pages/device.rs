@@ -8,7 +8,7 @@ use shared::map::row::DeviceMap;
 
 use crate::components::conn::ConnNotice;
 use crate::components::drawn::{Draw, Drawn};
-use crate::components::program::{ACTUATOR, DIAGNOSTICS, Program};
+use crate::components::program::{ACTUATOR, DIAGNOSTICS, NETWORK, Program};
 use crate::components::traffic::TrafficView;
 use crate::components::values::ValuesView;
 use crate::erased::{effect, memo};
@@ -78,6 +78,9 @@ pub fn DevicePage(
             return program(DIAGNOSTICS, tag.get_value());
         }
         match (kind.get(), shown.get()) {
+        (Some(kind), Tab::Overview) if kind.key().starts_with("ddc100") => {
+            program(NETWORK, tag.get_value())
+        }
         (None, _) => ().into_any(),
         (Some(kind), Tab::Values) => match kind.map() {
             Some(map) => values(tag.get_value(), map),

@@ -30,7 +30,7 @@ pub(super) fn absorb(bus: &BusState, index: u32, devices: &mut [DeviceState]) {
 }
 
 /// The bytes of a capture.
-pub(super) fn bytes_of(hex: &str) -> Vec<u8> {
+pub(crate) fn bytes_of(hex: &str) -> Vec<u8> {
     hex.as_bytes()
         .chunks_exact(2)
         .filter_map(|pair| {

@@ -1,6 +1,6 @@
 //! What the page knows, as plain Rust: no signals, no browser, tested natively.
 
-mod absorb;
+pub(crate) mod absorb;
 pub mod findings;
 pub mod health;
 pub mod job;

@@ -154,6 +154,32 @@ impl Lookup<'_> {
             .collect()
     }
 
+    /// A unit of a DDC-100 network, from its status register.
+    fn field_unit(self) -> Overview {
+        let mut seen = Overview {
+            known: self.seen("status").is_some(),
+            // Beyond 100 it counts in another scale, which is known on the unit's own page only.
+            position: self.figure("position").filter(|p| p.quality.is_none()),
+            ..Overview::default()
+        };
+        for bit in self.active("status") {
+            match bit.member.value {
+                0..=4 => {
+                    if !seen.state.is_empty() {
+                        seen.state.push_str(", ");
+                    }
+                    seen.state.push_str(bit.member.label);
+                }
+                6 => seen.mode = "Local",
+                // The channels: the page of the network weighs them.
+                10 | 11 => {}
+                5 | 7..=9 | 15 => seen.alarms.push(bit),
+                _ => seen.warnings.push(bit),
+            }
+        }
+        seen
+    }
+
     fn all(self, keys: &[&str]) -> Vec<Active> {
         keys.iter().flat_map(|key| self.active(key)).collect()
     }
@@ -163,10 +189,13 @@ impl Overview {
     /// Reads what is known of a device.
     #[must_use]
     pub fn of(device: Device, image: &Image) -> Self {
-        let Some(map) = device.map().filter(|_| device.is_icon()) else {
+        let Some(map) = device.map() else {
             return Self::default();
         };
         let look = Lookup { map, image };
+        if !device.is_icon() {
+            return look.field_unit();
+        }
         let bits = look.all(&[
             "actuator_status_1",
             "actuator_status_2",
@@ -311,6 +340,25 @@ mod tests {
         assert_eq!(seen.alarms[0].member.key, "motor_thermostat");
         assert_eq!(seen.warnings[0].member.key, "hi_temperature");
         assert!(seen.status.iter().all(|a| !SAID.contains(&a.member.key)));
+    }
+
+    /// Section 3.2.3 of the guide, and a unit whose position counts to 4095.
+    #[test]
+    fn a_field_unit_is_told_in_words() {
+        let read = |position: u16, status: u16| {
+            let image = image(&[(7, position), (8, status)]);
+            Overview::of(Device::Ddc100Uec, &image)
+        };
+        let seen = read(61, 0x0801);
+        assert_eq!((seen.known, seen.state.as_str()), (true, "Opened"));
+        assert_eq!(seen.position.unwrap().text, "61");
+        assert!(seen.alarms.is_empty() && seen.warnings.is_empty());
+        let seen = read(2048, 0x90CC);
+        assert_eq!(seen.state, "Stopped, Opening");
+        assert_eq!((seen.position, seen.mode), (None, "Local"));
+        let names: Vec<_> = seen.alarms.iter().map(|a| a.member.label).collect();
+        assert_eq!(names, ["Combined fault", "Phase error"]);
+        assert_eq!(seen.warnings.len(), 1);
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub use parts::{BusState, DeviceState};
 
 use super::absorb::{absorb, bytes_of};
 use super::job::Job;
+use crate::format::encode;
 
 /// Frames kept for each bus.
 pub const KEPT: u32 = 5000;
@@ -43,6 +44,13 @@ pub struct Plant {
 }
 
 impl Plant {
+    /// The address of the first DDC-100 network, as the route has it; `None` without one.
+    #[must_use]
+    pub fn network(&self) -> Option<String> {
+        let device = self.devices.iter().find(|d| d.is_ddc())?;
+        Some(encode(&device.info.bus))
+    }
+
     /// The page's first message.
     #[must_use]
     pub const fn hello() -> ToBackend {

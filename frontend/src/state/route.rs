@@ -105,6 +105,9 @@ pub enum Screen {
     Dop(String),
     /// Saved devices, and the word of the open tab.
     Snapshots(String),
+    /// DDC-100 networks: the rest of the address, as it stands there. The program that shows them
+    /// takes it apart; empty for the offline side.
+    Network(String),
     /// The frames on a bus; the first one if none is named.
     Traffic(Option<String>),
     /// Settings, sources, help.
@@ -152,6 +155,9 @@ impl Route {
             ("device", Some(tag)) => Screen::Device(tag, third),
             ("dop", tab) => Screen::Dop(tab.unwrap_or_default()),
             ("snapshots", tab) => Screen::Snapshots(tab.unwrap_or_default()),
+            ("network", _) => {
+                Screen::Network(path.split_once('/').map_or("", |(_, rest)| rest).to_owned())
+            }
             ("traffic", bus) => Screen::Traffic(bus),
             ("settings", _) => Screen::Settings,
             _ => Screen::Decode,
@@ -206,6 +212,8 @@ impl fmt::Display for Route {
             Screen::Dop(tab) => write!(f, "#/dop/{}", encode(tab))?,
             Screen::Snapshots(tab) if tab.is_empty() => f.write_str("#/snapshots")?,
             Screen::Snapshots(tab) => write!(f, "#/snapshots/{}", encode(tab))?,
+            Screen::Network(rest) if rest.is_empty() => f.write_str("#/network")?,
+            Screen::Network(rest) => write!(f, "#/network/{rest}")?,
             Screen::Traffic(None) => f.write_str("#/traffic")?,
             Screen::Traffic(Some(bus)) => write!(f, "#/traffic/{}", encode(bus))?,
             Screen::Settings => f.write_str("#/settings")?,
@@ -235,6 +243,8 @@ mod tests {
             "#/dop/profile?q=1",
             "#/snapshots",
             "#/snapshots/logs?of=1",
+            "#/network",
+            "#/network/Loop%201/tags?sort=-age",
             "#/traffic",
             "#/traffic/bus%201",
             "#/settings",

@@ -3,6 +3,7 @@
 //! The form is that of the derived serializers, which the backend uses; the tests hold both against
 //! each other.
 
+pub mod ddc;
 pub mod dop;
 pub mod icon;
 #[cfg(test)]

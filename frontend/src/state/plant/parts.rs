@@ -74,6 +74,12 @@ impl DeviceState {
         }
     }
 
+    /// True for a unit of a DDC-100 network.
+    #[must_use]
+    pub fn is_ddc(&self) -> bool {
+        self.info.kind.starts_with("ddc100")
+    }
+
     /// True for a device whose page is drawn by the program of diagnostic objects.
     #[must_use]
     pub fn is_dop(&self) -> bool {

@@ -1,0 +1,328 @@
+//! The table of all units.
+
+use shared::device::Device;
+
+use crate::components::icon::Glyph;
+use crate::format::{age, millis};
+use crate::markup::Markup;
+use crate::markup::control::{Button, search, tick};
+use crate::markup::device::sign;
+use crate::network::state::net::{Net, Reach, Unit};
+use crate::network::state::table::{Column, Order};
+use crate::network::state::tags::{Scaling, Tags};
+use crate::network::state::unit::{judge, kind};
+
+/// Search, filter and what can be done with the rows.
+pub fn tools(html: &mut Markup, query: &str, only_faults: bool, shown: usize, all: usize) {
+    search(
+        html,
+        "q",
+        "unit-search",
+        "Tag, address, state or fault",
+        query,
+    );
+    tick(
+        html,
+        "faults",
+        "only-faults",
+        "Only what is wrong",
+        only_faults,
+    );
+    html.open(
+        "span",
+        &[
+            ("class", "quiet"),
+            ("data-testid", "unit-count"),
+            ("role", "status"),
+        ],
+    );
+    html.text(&format!("{shown} of {all}")).close("span");
+    Button {
+        act: "copy",
+        testid: "copy-units",
+        words: "Copy",
+        glyph: Some(Glyph::Copy),
+        disabled: shown == 0,
+        ..Button::default()
+    }
+    .draw(html);
+    Button {
+        act: "csv",
+        testid: "save-units",
+        words: "CSV",
+        glyph: Some(Glyph::Save),
+        disabled: shown == 0,
+        ..Button::default()
+    }
+    .draw(html);
+}
+
+/// Columns of the head: class, words, and the column that it sorts by.
+const HEAD: [(&str, &str, Option<Column>); 11] = [
+    ("", "", Some(Column::Worst)),
+    ("num", "", Some(Column::Place)),
+    ("num", "", Some(Column::Unit)),
+    ("", "", Some(Column::Tag)),
+    ("", "Type", None),
+    ("num", "", Some(Column::Position)),
+    ("", "", Some(Column::Status)),
+    ("", "Faults", None),
+    ("", "Host A B / own A B", None),
+    ("num", "", Some(Column::Age)),
+    ("num", "", Some(Column::Response)),
+];
+
+/// The head; each column that can be is a button.
+pub fn head(html: &mut Markup, order: Order) {
+    for (class, words, column) in HEAD {
+        let Some(column) = column else {
+            html.node("span", class, words);
+            continue;
+        };
+        html.open("span", &[("class", class)]);
+        let name = format!("sort-{}", column.key());
+        let title = format!("Sort by {}", column.label().to_lowercase());
+        html.open(
+            "button",
+            &[
+                ("class", "sort"),
+                ("data-act", "sort"),
+                ("data-sort", column.key()),
+                ("data-testid", &name),
+                ("data-order", order.aria(column)),
+                ("title", &title),
+            ],
+        );
+        html.text(column.label());
+        html.text(match order.aria(column) {
+            "ascending" => " ▲",
+            "descending" => " ▼",
+            _ => "",
+        });
+        html.close("button").close("span");
+    }
+}
+
+/// A unit.
+pub fn row(html: &mut Markup, net: &Net, tags: &Tags, at: usize, now_us: u64) {
+    let Some(unit) = net.units.get(at) else {
+        return;
+    };
+    let ports = net.ports.len();
+    let (said, health) = judge(unit, ports);
+    let reach = unit.reach(ports);
+    let stale = matches!(reach, Reach::Lost);
+    let number = unit.info.unit.to_string();
+    html.open(
+        "div",
+        &[
+            ("class", if stale { "unit-row stale" } else { "unit-row" }),
+            ("data-testid", "unit-row"),
+            ("data-unit", &number),
+        ],
+    );
+    html.open("span", &[("class", "unit-sign")]);
+    if let Some(mark) = health.sign() {
+        sign(html, mark, "16");
+    }
+    html.close("span");
+    html.node("span", "num quiet unit-place", &(at + 1).to_string());
+    html.node("span", "num unit-number", &number);
+    html.open("span", &[("class", "unit-tag")]);
+    html.node("b", "", tags.tag(unit));
+    let description = tags.description(unit);
+    if !description.is_empty() {
+        html.text(" ").node("span", "quiet", description);
+    }
+    html.close("span");
+    html.node("span", "quiet unit-kind", kind(unit.device));
+    position(html, said.position, tags.scaling(unit.info.unit), stale);
+    html.open("span", &[("class", "unit-state")]);
+    html.text(&match (said.known, reach) {
+        (false, Reach::Unknown) => "not tried yet".to_owned(),
+        (false, _) => reach.words(ports).to_owned(),
+        (true, Reach::Lost) => format!("off-line, was {}", said.state),
+        (true, _) => said.state.clone(),
+    });
+    if said.local {
+        html.text(", local");
+    }
+    html.close("span");
+    html.node("span", "unit-faults", &said.fault_words(2));
+    html.open("span", &[("class", "mono unit-bits")]);
+    bit(html, unit.fault[0], true, "host-a");
+    html.text(" ");
+    bit(html, unit.fault[1], true, "host-b");
+    html.node("i", "quiet", " / ");
+    bit(html, said.channels[0], true, "own-a");
+    html.text(" ");
+    // Without the optional channel a UEC always reports its fault.
+    bit(html, said.channels[1], has_channel_b(unit), "own-b");
+    html.close("span");
+    html.node("span", "num quiet unit-age", &since(unit, now_us));
+    let took = unit.took.map_or_else(String::new, millis);
+    html.node("span", "num quiet unit-took", &took);
+    html.close("div");
+}
+
+/// True for the types whose channel B bit tells of the second connection of the loop (reading D31).
+#[must_use]
+pub const fn has_channel_b(unit: &Unit) -> bool {
+    matches!(unit.device, Device::Ddc100Mx | Device::Ddc100MxB)
+}
+
+/// How old the last good answer is.
+#[must_use]
+pub fn since(unit: &Unit, now_us: u64) -> String {
+    unit.at
+        .map_or_else(|| "never".to_owned(), |at| age(now_us.saturating_sub(at)))
+}
+
+/// A fault bit: 1 is a fault.
+pub fn bit(html: &mut Markup, bit: Option<bool>, matters: bool, testid: &str) {
+    let (class, text) = match bit {
+        None => ("quiet", "\u{2013}"),
+        Some(false) => ("quiet", "0"),
+        Some(true) if matters => ("bit-on", "1"),
+        Some(true) => ("quiet", "1"),
+    };
+    html.open("span", &[("class", class), ("data-bit", testid)]);
+    html.text(text).close("span");
+}
+
+/// The position with its bar, in percent unless it is shown raw.
+fn position(html: &mut Markup, raw: Option<u16>, scaling: Scaling, stale: bool) {
+    html.open("span", &[("class", "num unit-position")]);
+    match raw {
+        None => {
+            html.text("\u{2013}");
+        }
+        Some(raw) if scaling == Scaling::Raw => {
+            html.text(&raw.to_string());
+            html.text(" ").node("i", "unit", "raw");
+        }
+        Some(raw) => {
+            let tenths = percent_tenths(raw, scaling);
+            let text = if scaling == Scaling::Percent {
+                raw.to_string()
+            } else {
+                format!("{}.{}", tenths / 10, tenths % 10)
+            };
+            html.text(&text);
+            html.text(" ").node("i", "unit", "%");
+            if !stale {
+                bar(html, tenths);
+            }
+        }
+    }
+    html.close("span");
+}
+
+/// A count as tenths of a percent.
+#[must_use]
+pub fn percent_tenths(raw: u16, scaling: Scaling) -> u32 {
+    u32::from(raw) * 1000 / u32::from(scaling.full().max(1))
+}
+
+fn bar(html: &mut Markup, tenths: u32) {
+    html.open(
+        "svg",
+        &[
+            ("class", "bar"),
+            ("viewBox", "0 0 1000 6"),
+            ("preserveAspectRatio", "none"),
+            ("aria-hidden", "true"),
+        ],
+    );
+    let class = if tenths > 1000 {
+        "bar-beyond"
+    } else {
+        "bar-fill"
+    };
+    for (class, width) in [("bar-track", 1000), (class, tenths.min(1000))] {
+        html.open(
+            "rect",
+            &[
+                ("class", class),
+                ("width", &width.to_string()),
+                ("height", "6"),
+            ],
+        )
+        .close("rect");
+    }
+    html.close("svg");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::state::net::tests::{network, poll};
+    use shared::proto::DdcShape;
+
+    fn drawn(net: &Net, tags: &Tags, at: usize) -> String {
+        let mut html = Markup::new();
+        row(&mut html, net, tags, at, 8_000_000);
+        html.finish()
+    }
+
+    #[test]
+    fn host_faults_and_own_bits_are_kept_apart() {
+        let mut net = network(2, DdcShape::Loop, 2);
+        let words = [61, 0x0801, 0, 0, 0, 0, 0, 0, 0];
+        poll(&mut net, 1, [Some(false), Some(true)], &words);
+        let html = drawn(&net, &Tags::default(), 0);
+        assert!(html.contains("<span class=\"bit-on\" data-bit=\"host-b\">1</span>"));
+        // The bit of a channel that the type does not have is no alarm.
+        assert!(html.contains("<span class=\"quiet\" data-bit=\"own-b\">1</span>"));
+        assert!(html.contains("<span class=\"quiet\" data-bit=\"host-a\">0</span>"));
+        assert!(html.contains(">61 <i class=\"unit\">%</i>"));
+        assert!(html.contains(">open</span>") && html.contains("3.0 s"));
+        let html = drawn(&net, &Tags::default(), 1);
+        assert!(html.contains("not tried yet") && html.contains("never"));
+        assert!(html.contains("data-bit=\"host-a\">\u{2013}"));
+    }
+
+    #[test]
+    fn a_position_has_its_scale() {
+        let mut net = network(1, DdcShape::Loop, 2);
+        poll(
+            &mut net,
+            1,
+            [Some(false); 2],
+            &[2048, 0, 0, 0, 0, 0, 0, 0, 0],
+        );
+        let mut tags = Tags::default();
+        assert!(
+            drawn(&net, &tags, 0).contains("bar-beyond"),
+            "2048 is no percent"
+        );
+        tags.set_scaling(1, Scaling::Twelve);
+        assert!(drawn(&net, &tags, 0).contains(">50.0 <i"));
+        tags.set_scaling(1, Scaling::Raw);
+        assert!(drawn(&net, &tags, 0).contains(">2048 <i class=\"unit\">raw"));
+    }
+
+    #[test]
+    fn an_off_line_unit_says_so() {
+        let mut net = network(1, DdcShape::Loop, 2);
+        poll(
+            &mut net,
+            1,
+            [Some(false); 2],
+            &[10, 0x0802, 0, 0, 0, 0, 0, 0, 0],
+        );
+        poll(&mut net, 1, [Some(true); 2], &[]);
+        let html = drawn(&net, &Tags::default(), 0);
+        assert!(html.contains("off-line, was closed") && html.contains("stale"));
+        assert!(html.contains("sign-f"));
+    }
+
+    #[test]
+    fn the_head_tells_the_order() {
+        let mut html = Markup::new();
+        head(&mut html, Order::parse("-age"));
+        let html = html.finish();
+        assert!(html.contains("data-testid=\"sort-age\" data-order=\"descending\""));
+        assert_eq!(html.matches(" ▼").count(), 1);
+    }
+}

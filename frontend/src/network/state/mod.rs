@@ -1,0 +1,10 @@
+//! What the program knows, without signals and without a browser.
+
+pub mod cable;
+pub mod findings;
+pub mod geometry;
+pub mod net;
+pub mod picture;
+pub mod table;
+pub mod tags;
+pub mod unit;

@@ -1,0 +1,541 @@
+//! A network as the backend tells of it: how it is made up, what the last poll of each unit brought,
+//! how the passes go.
+
+use shared::capture::Micros;
+use shared::ddc100::diagnosis::Diagnosis;
+use shared::ddc100::{FaultTable, HostPort};
+use shared::device::Device;
+use shared::image::Image;
+use shared::proto::{DdcNews, DdcShape, DdcUnit, LineState, Outcome};
+
+use super::findings::findings;
+use crate::state::absorb::bytes_of;
+
+/// A host port.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// Where it goes.
+    pub line: String,
+    /// Its state.
+    pub state: LineState,
+    /// What happened to it, and what to do.
+    pub text: String,
+    /// How long its last whole pass took and should have taken, in microseconds.
+    pub pass: Option<(u64, u64)>,
+}
+
+/// Which host ports reach a unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Every port that there is.
+    Full,
+    /// Only this one of two.
+    Only(u8),
+    /// None: the unit is off-line.
+    Lost,
+    /// This port reaches it or not; the other one was not tried yet.
+    Half(u8, bool),
+    /// Not tried yet.
+    Unknown,
+}
+
+impl Reach {
+    /// In words, as the state of a unit.
+    #[must_use]
+    pub const fn words(self, ports: usize) -> &'static str {
+        match (self, ports) {
+            (Self::Full, 2..) => "answers on both ports",
+            (Self::Full, _) => "answers",
+            (Self::Only(1), _) => "answers on port 1 only",
+            (Self::Only(_), _) => "answers on port 2 only",
+            (Self::Lost, 2..) => "no answer on either port",
+            (Self::Lost, _) => "no answer",
+            (Self::Half(1, true), _) => "answers on port 1, port 2 not tried yet",
+            (Self::Half(_, true), _) => "answers on port 2, port 1 not tried yet",
+            (Self::Half(1, false), _) => "no answer on port 1, port 2 not tried yet",
+            (Self::Half(_, false), _) => "no answer on port 2, port 1 not tried yet",
+            (Self::Unknown, _) => "not tried yet",
+        }
+    }
+}
+
+/// Which ports reach a unit whose faults on port 1 and 2 are these.
+#[must_use]
+pub const fn reach(fault: [Option<bool>; 2], ports: usize) -> Reach {
+    if ports < 2 {
+        return match fault[0] {
+            None => Reach::Unknown,
+            Some(false) => Reach::Full,
+            Some(true) => Reach::Lost,
+        };
+    }
+    match fault {
+        [None, None] => Reach::Unknown,
+        [Some(false), Some(false)] => Reach::Full,
+        [Some(false), Some(true)] => Reach::Only(1),
+        [Some(true), Some(false)] => Reach::Only(2),
+        [Some(true), Some(true)] => Reach::Lost,
+        [Some(fault), None] => Reach::Half(1, !fault),
+        [None, Some(fault)] => Reach::Half(2, !fault),
+    }
+}
+
+/// A unit.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// Address, kind, tag and description, as configured.
+    pub info: DdcUnit,
+    /// Its kind.
+    pub device: Device,
+    /// Its registers as last read.
+    pub image: Image,
+    /// How the last poll ended; `None` before the first.
+    pub outcome: Option<Outcome>,
+    /// The same in words; empty if it was good.
+    pub text: String,
+    /// Host port of the last poll.
+    pub port: u8,
+    /// Fault on host port 1 and 2, as the host found it; `None` where it was not tried.
+    pub fault: [Option<bool>; 2],
+    /// When the last good answer came, in microseconds of the backend.
+    pub at: Option<u64>,
+    /// How long it took, in microseconds.
+    pub took: Option<u64>,
+}
+
+impl Unit {
+    fn new(info: DdcUnit) -> Self {
+        Self {
+            device: Device::from_key(&info.kind).unwrap_or_default(),
+            info,
+            image: Image::new(),
+            outcome: None,
+            text: String::new(),
+            port: 0,
+            fault: [None; 2],
+            at: None,
+            took: None,
+        }
+    }
+
+    /// Which of so many ports reach it.
+    #[must_use]
+    pub const fn reach(&self, ports: usize) -> Reach {
+        reach(self.fault, ports)
+    }
+
+    /// Its tag, or its address if it has none.
+    #[must_use]
+    pub fn name(&self) -> String {
+        if self.info.tag.is_empty() {
+            format!("unit {}", self.info.unit)
+        } else {
+            self.info.tag.clone()
+        }
+    }
+}
+
+/// A read that was asked for here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// Its number.
+    pub id: u32,
+    /// The unit.
+    pub unit: u8,
+    /// How it ended and the words; `None` while it is under way.
+    pub end: Option<(Outcome, String)>,
+}
+
+/// A network.
+#[derive(Clone, Debug, Default)]
+pub struct Net {
+    /// How the cable runs; `None` before the backend told.
+    pub shape: Option<DdcShape>,
+    /// Key of the framing.
+    pub framing: String,
+    /// Bits a second.
+    pub baud: u32,
+    /// Host ports 1 and, if there is one, 2.
+    pub ports: Vec<Port>,
+    /// First register of each poll, zero-based.
+    pub start: u16,
+    /// Registers of each poll.
+    pub count: u16,
+    /// From an answer to the next request, in milliseconds.
+    pub turn_ms: u32,
+    /// How long an answer is waited for, in milliseconds.
+    pub timeout_ms: u32,
+    /// How often a poll is repeated on the same port.
+    pub retries: u8,
+    /// The units in the order of the cable, from host port 1.
+    pub units: Vec<Unit>,
+    /// The faults, as they came in, which tells whether they belong together.
+    pub table: Option<FaultTable>,
+    /// True if no fault changed since the last pass was over.
+    quiet: bool,
+    /// Number of the last whole pass; 0 before the first.
+    pub passes: u64,
+    /// The read that was asked for last.
+    pub asked: Option<Asked>,
+}
+
+impl Net {
+    /// Takes news in. Those about a unit or a port that is not of this network are left out.
+    pub fn hear(&mut self, news: DdcNews) {
+        match news {
+            DdcNews::Network {
+                shape,
+                framing,
+                baud,
+                ports,
+                start,
+                count,
+                turn_ms,
+                timeout_ms,
+                retries,
+                units,
+                bus: _,
+            } => {
+                let port = |line| Port {
+                    line,
+                    state: LineState::Starting,
+                    text: String::new(),
+                    pass: None,
+                };
+                let table = FaultTable::new(units.iter().map(|u| u.unit), ports.len() > 1);
+                *self = Self {
+                    table: Some(table),
+                    shape: Some(shape),
+                    framing,
+                    baud,
+                    ports: ports.into_iter().map(port).collect(),
+                    start,
+                    count,
+                    turn_ms,
+                    timeout_ms,
+                    retries,
+                    units: units.into_iter().map(Unit::new).collect(),
+                    quiet: false,
+                    passes: 0,
+                    asked: self.asked.take(),
+                };
+            }
+            DdcNews::Unit {
+                unit,
+                port,
+                outcome,
+                text,
+                fault_a,
+                fault_b,
+                request,
+                response,
+                at_us,
+                took_us,
+                bus: _,
+            } => {
+                self.note(unit, port, [fault_a, fault_b]);
+                let Some(unit) = self.unit_mut(unit) else {
+                    return;
+                };
+                unit.outcome = Some(outcome);
+                unit.text = text;
+                unit.port = port;
+                unit.fault = [fault_a, fault_b];
+                unit.at = at_us;
+                unit.took = took_us;
+                if let Some(at) = at_us {
+                    unit.image
+                        .absorb(&bytes_of(&request), &bytes_of(&response), Micros::new(at));
+                }
+            }
+            DdcNews::Pass {
+                port,
+                number,
+                took_us,
+                expected_us,
+                ..
+            } => {
+                self.passes = number;
+                self.bear_out(port);
+                if let Some(port) = self.port_mut(port) {
+                    port.pass = Some((took_us, expected_us));
+                }
+            }
+            DdcNews::Port {
+                port, state, text, ..
+            } => {
+                if let (Some(table), Some(of)) = (self.table.as_mut(), HostPort::from_number(port))
+                {
+                    table.set_port(of, state != LineState::Down);
+                }
+                if let Some(port) = self.port_mut(port) {
+                    port.state = state;
+                    port.text = text;
+                }
+            }
+            DdcNews::Read {
+                id,
+                unit,
+                outcome,
+                text,
+                request,
+                response,
+                at_us,
+                bus: _,
+            } => {
+                if let Some(unit) = self.unit_mut(unit) {
+                    unit.image.absorb(
+                        &bytes_of(&request),
+                        &bytes_of(&response),
+                        Micros::new(at_us),
+                    );
+                }
+                if let Some(asked) = self.asked.as_mut().filter(|a| a.id == id) {
+                    asked.end = Some((outcome, text));
+                }
+            }
+            DdcNews::Poll { .. } => {}
+        }
+    }
+
+    /// A whole pass on a port is over. If nothing changed in it, it bears out every fault there.
+    /// News of single units do not: of several polls only the newest may have come here.
+    fn bear_out(&mut self, port: u8) {
+        let quiet = core::mem::replace(&mut self.quiet, true);
+        let (Some(table), Some(of)) = (&mut self.table, HostPort::from_number(port)) else {
+            return;
+        };
+        for unit in self.units.iter().filter(|_| quiet) {
+            let at = usize::from(port).saturating_sub(1);
+            if let Some(Some(failed)) = unit.fault.get(at) {
+                table.note(unit.info.unit, of, *failed);
+            }
+        }
+    }
+
+    /// Takes faults into the table: that of the port that was polled, and the other one if it is
+    /// news.
+    fn note(&mut self, unit: u8, port: u8, faults: [Option<bool>; 2]) {
+        let Some(table) = &mut self.table else {
+            return;
+        };
+        for (of, fault) in HostPort::BOTH.into_iter().zip(faults) {
+            let Some(failed) = fault else { continue };
+            let news = table.fault(unit, of) != Some(failed);
+            if of.number() == port || news {
+                table.note(unit, of, failed);
+            }
+            self.quiet &= !news;
+        }
+    }
+
+    /// What the pattern of faults means; `None` before the backend told of the network.
+    #[must_use]
+    pub fn diagnosis(&self) -> Option<Diagnosis> {
+        findings(self.shape?, self.table.as_ref()?)
+    }
+
+    /// A read of a unit was asked for.
+    pub fn ask(&mut self, id: u32, unit: u8) {
+        self.asked = Some(Asked {
+            id,
+            unit,
+            end: None,
+        });
+    }
+
+    /// The connection is lost: what was asked will not be answered.
+    pub fn lost(&mut self) {
+        if let Some(asked) = self.asked.as_mut().filter(|a| a.end.is_none()) {
+            let words = "The connection to the bridge was lost.";
+            asked.end = Some((Outcome::Down, words.to_owned()));
+        }
+    }
+
+    /// Where a unit is along the cable, from 0.
+    #[must_use]
+    pub fn place(&self, unit: u8) -> Option<usize> {
+        self.units.iter().position(|u| u.info.unit == unit)
+    }
+
+    fn unit_mut(&mut self, unit: u8) -> Option<&mut Unit> {
+        self.units.iter_mut().find(|u| u.info.unit == unit)
+    }
+
+    fn port_mut(&mut self, port: u8) -> Option<&mut Port> {
+        let at = usize::from(port).checked_sub(1)?;
+        self.ports.get_mut(at)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A loop of so many units of the UEC-3-DDC, nothing tried yet.
+    pub(crate) fn network(units: u8, shape: DdcShape, ports: usize) -> Net {
+        let mut net = Net::default();
+        let unit = |unit: u8| DdcUnit {
+            unit,
+            kind: "ddc100-uec".into(),
+            tag: format!("MOV-{unit:03}"),
+            description: String::new(),
+        };
+        let lines = ["/dev/ttyS0", "/dev/ttyS1"];
+        net.hear(DdcNews::Network {
+            bus: "Loop".into(),
+            shape,
+            framing: "modbus-rtu".into(),
+            baud: 9600,
+            ports: lines.iter().take(ports).map(|l| (*l).to_owned()).collect(),
+            start: 7,
+            count: 9,
+            turn_ms: 30,
+            timeout_ms: 250,
+            retries: 3,
+            units: (1..=units).map(unit).collect(),
+        });
+        net
+    }
+
+    /// What a poll of a unit brought: its faults, and the registers from 8 on if it answered.
+    pub(crate) fn poll(net: &mut Net, unit: u8, fault: [Option<bool>; 2], words: &[u16]) {
+        let count = u8::try_from(words.len()).unwrap();
+        let mut response = format!("03{:02x}", count * 2);
+        for word in words {
+            response.push_str(&format!("{word:04x}"));
+        }
+        let good = !words.is_empty();
+        net.hear(DdcNews::Unit {
+            bus: "Loop".into(),
+            unit,
+            port: 1,
+            outcome: if good { Outcome::Ok } else { Outcome::Silence },
+            text: if good {
+                String::new()
+            } else {
+                "no answer within 250 ms".into()
+            },
+            fault_a: fault[0],
+            fault_b: fault[1],
+            request: format!("030007{count:04x}"),
+            response: if good { response } else { String::new() },
+            at_us: good.then_some(5_000_000),
+            took_us: good.then_some(71_000),
+        });
+    }
+
+    #[test]
+    fn a_network_is_built_up_from_news() {
+        let mut net = network(3, DdcShape::Loop, 2);
+        assert_eq!(net.units.len(), 3);
+        assert_eq!(net.units[0].device, Device::Ddc100Uec);
+        assert_eq!(net.units[0].reach(2), Reach::Unknown);
+        poll(&mut net, 2, [Some(false), Some(false)], &[61, 0x0801]);
+        let unit = &net.units[1];
+        assert_eq!((unit.at, unit.took), (Some(5_000_000), Some(71_000)));
+        assert_eq!(unit.image.len(), 2);
+        assert_eq!(unit.reach(2), Reach::Full);
+        // A fault does not take the last values away.
+        poll(&mut net, 2, [Some(true), Some(true)], &[]);
+        assert_eq!(net.units[1].image.len(), 2);
+        assert_eq!(net.units[1].reach(2), Reach::Lost);
+        // Nothing of another network.
+        poll(&mut net, 9, [Some(true), None], &[]);
+        net.hear(DdcNews::Pass {
+            bus: "Loop".into(),
+            port: 2,
+            number: 8,
+            took_us: 400_000,
+            expected_us: 390_000,
+        });
+        assert_eq!(net.passes, 8);
+        assert_eq!(net.ports[1].pass, Some((400_000, 390_000)));
+        net.hear(DdcNews::Port {
+            bus: "Loop".into(),
+            port: 3,
+            state: LineState::Down,
+            text: String::new(),
+        });
+        assert!(net.ports.iter().all(|p| p.state == LineState::Starting));
+    }
+
+    #[test]
+    fn faults_say_which_port_reaches() {
+        use Reach::{Full, Half, Lost, Only, Unknown};
+        let (no, yes) = (Some(false), Some(true));
+        for (fault, two, one) in [
+            ([None, None], Unknown, Unknown),
+            ([no, no], Full, Full),
+            ([no, yes], Only(1), Full),
+            ([yes, no], Only(2), Lost),
+            ([yes, yes], Lost, Lost),
+            ([no, None], Half(1, true), Full),
+            ([yes, None], Half(1, false), Lost),
+            ([None, no], Half(2, true), Unknown),
+            ([None, yes], Half(2, false), Unknown),
+        ] {
+            assert_eq!((reach(fault, 2), reach(fault, 1)), (two, one), "{fault:?}");
+        }
+    }
+
+    /// Example 3 of section 4.3.2: preliminary until a pass on each port bore it out.
+    #[test]
+    fn passes_bear_a_diagnosis_out() {
+        let mut net = network(5, DdcShape::Loop, 2);
+        for unit in 1..=5 {
+            let fault = [Some(unit > 3), Some(unit <= 3)];
+            poll(&mut net, unit, fault, &[61, 0x0801, 0, 0, 0, 0, 0, 0, 0]);
+        }
+        let unsettled = |net: &Net| net.diagnosis().unwrap().unsettled;
+        assert_eq!(net.diagnosis().unwrap().findings[0].key(), "break");
+        assert!(unsettled(&net) > 0);
+        let pass = |net: &mut Net, port| {
+            net.hear(DdcNews::Pass {
+                bus: "Loop".into(),
+                port,
+                number: 1,
+                took_us: 1,
+                expected_us: 1,
+            });
+        };
+        // The pass in which it changed proves nothing.
+        pass(&mut net, 1);
+        assert!(unsettled(&net) > 0);
+        pass(&mut net, 2);
+        pass(&mut net, 1);
+        assert_eq!(unsettled(&net), 0);
+        // One unit changes: everything has to be looked at again.
+        poll(&mut net, 2, [Some(true), Some(true)], &[]);
+        assert!(unsettled(&net) > 0);
+    }
+
+    #[test]
+    fn a_read_that_was_asked_ends_once() {
+        let mut net = network(2, DdcShape::SingleEnded, 1);
+        net.ask(7, 2);
+        let read = |id| DdcNews::Read {
+            id,
+            bus: "Loop".into(),
+            unit: 2,
+            outcome: Outcome::Ok,
+            text: String::new(),
+            request: "0300000002".into(),
+            response: "030400010002".into(),
+            at_us: 9,
+        };
+        net.hear(read(6));
+        assert_eq!(net.asked.as_ref().unwrap().end, None);
+        net.hear(read(7));
+        assert_eq!(
+            net.asked.as_ref().unwrap().end,
+            Some((Outcome::Ok, String::new()))
+        );
+        net.lost();
+        assert_eq!(net.asked.unwrap().end.unwrap().0, Outcome::Ok);
+        let mut net = network(2, DdcShape::SingleEnded, 1);
+        net.ask(8, 1);
+        net.lost();
+        assert_eq!(net.asked.unwrap().end.unwrap().0, Outcome::Down);
+    }
+}

@@ -1,0 +1,358 @@
+//! The table of all units: which are shown, and in which order.
+
+use core::cmp::Ordering;
+
+use super::net::{Net, Unit};
+use super::tags::Tags;
+use super::unit::{Health, Said, judge, kind};
+
+/// A column that the table can be sorted by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Column {
+    /// The worst first, then in the order of the cable.
+    #[default]
+    Worst,
+    /// The order of the cable.
+    Place,
+    /// The address.
+    Unit,
+    /// The tag.
+    Tag,
+    /// The position of the valve.
+    Position,
+    /// The state in words.
+    Status,
+    /// The age of the last good answer, the youngest first.
+    Age,
+    /// How long the last answer took, the quickest first.
+    Response,
+}
+
+impl Column {
+    /// All columns.
+    pub const ALL: [Self; 8] = [
+        Self::Worst,
+        Self::Place,
+        Self::Unit,
+        Self::Tag,
+        Self::Position,
+        Self::Status,
+        Self::Age,
+        Self::Response,
+    ];
+
+    /// The word in the address bar.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Worst => "worst",
+            Self::Place => "place",
+            Self::Unit => "unit",
+            Self::Tag => "tag",
+            Self::Position => "position",
+            Self::Status => "status",
+            Self::Age => "age",
+            Self::Response => "response",
+        }
+    }
+
+    /// The word over the column.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Worst => "Worst",
+            Self::Place => "Order",
+            Self::Unit => "Unit",
+            Self::Tag => "Tag",
+            Self::Position => "Position",
+            Self::Status => "Status",
+            Self::Age => "Age",
+            Self::Response => "Response",
+        }
+    }
+}
+
+/// By which column the table is sorted, and which way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Order {
+    /// The column.
+    pub column: Column,
+    /// True for the largest first.
+    pub down: bool,
+}
+
+impl Order {
+    /// Reads the setting of the address bar: `tag`, `-tag`; anything else is the worst first.
+    #[must_use]
+    pub fn parse(text: &str) -> Self {
+        let key = text.strip_prefix('-');
+        let found = Column::ALL
+            .into_iter()
+            .find(|c| c.key() == key.unwrap_or(text));
+        Self {
+            column: found.unwrap_or_default(),
+            down: key.is_some() && found.is_some(),
+        }
+    }
+
+    /// The setting after a column was chosen: its order, or the other way round if it has it.
+    #[must_use]
+    pub fn after(self, chosen: &str) -> String {
+        let down = self.column.key() == chosen && !self.down;
+        match (down, chosen == Column::default().key()) {
+            (true, _) => format!("-{chosen}"),
+            (false, true) => String::new(),
+            (false, false) => chosen.to_owned(),
+        }
+    }
+
+    /// How a column is sorted, as ARIA says it.
+    #[must_use]
+    pub fn aria(self, column: Column) -> &'static str {
+        match (self.column == column, self.down) {
+            (false, _) => "none",
+            (true, false) => "ascending",
+            (true, true) => "descending",
+        }
+    }
+}
+
+/// What a unit is sorted by; what is not known has none and comes last, whichever way.
+enum Key {
+    Number(u64),
+    Text(String),
+    None,
+}
+
+impl Key {
+    fn compare(&self, other: &Self, down: bool) -> Ordering {
+        let order = match (self, other) {
+            (Self::None, Self::None) => return Ordering::Equal,
+            (Self::None, _) => return Ordering::Greater,
+            (_, Self::None) => return Ordering::Less,
+            (Self::Number(a), Self::Number(b)) => a.cmp(b),
+            (Self::Text(a), Self::Text(b)) => a.cmp(b),
+            (Self::Number(_), Self::Text(_)) => Ordering::Less,
+            (Self::Text(_), Self::Number(_)) => Ordering::Greater,
+        };
+        if down { order.reverse() } else { order }
+    }
+}
+
+fn key(unit: &Unit, said: &Said, health: Health, tags: &Tags, column: Column) -> Key {
+    let maybe = |n: Option<u64>| n.map_or(Key::None, Key::Number);
+    match column {
+        Column::Worst => Key::Number(u64::from(u8::MAX - health as u8)),
+        // Rows come in the order of the cable, and equal ones stay in it.
+        Column::Place => Key::Number(0),
+        Column::Unit => Key::Number(u64::from(unit.info.unit)),
+        Column::Tag => match tags.tag(unit) {
+            "" => Key::None,
+            tag => Key::Text(tag.to_lowercase()),
+        },
+        Column::Position => maybe(said.position.map(|raw| {
+            let scaling = tags.scaling(unit.info.unit);
+            u64::from(raw) * 4095 / u64::from(scaling.full().max(1))
+        })),
+        Column::Status => match said.known {
+            true => Key::Text(said.state.clone()),
+            false => Key::None,
+        },
+        Column::Age => maybe(unit.at.map(|at| u64::MAX - at)),
+        Column::Response => maybe(unit.took),
+    }
+}
+
+/// True if a unit is wanted: by its address, tag, description, kind, state or a fault, whatever of
+/// it has all words of the query.
+fn wanted(unit: &Unit, said: &Said, health: Health, tags: &Tags, query: &str) -> bool {
+    let mut text = format!(
+        "{} {} {} {} {} {} {}",
+        unit.info.unit,
+        tags.tag(unit),
+        tags.description(unit),
+        kind(unit.device),
+        said.state,
+        if said.local { "local" } else { "" },
+        if health == Health::Lost {
+            "off-line"
+        } else {
+            ""
+        },
+    );
+    for bit in &said.faults {
+        text.push(' ');
+        text.push_str(bit.member.label);
+    }
+    let text = text.to_lowercase();
+    query
+        .to_lowercase()
+        .split_whitespace()
+        .all(|word| text.contains(word))
+}
+
+/// The places of the units that are shown, in the order in which they are.
+#[must_use]
+pub fn rows(net: &Net, tags: &Tags, order: Order, query: &str, only_faults: bool) -> Vec<usize> {
+    let mut found: Vec<(Key, usize)> = Vec::new();
+    for (at, unit) in net.units.iter().enumerate() {
+        let (said, health) = judge(unit, net.ports.len());
+        if (only_faults && health <= Health::Unknown) || !wanted(unit, &said, health, tags, query) {
+            continue;
+        }
+        let key = key(unit, &said, health, tags, order.column);
+        // The sorts of the standard library are several kilobytes for each type.
+        let place = found.partition_point(|(other, _)| other.compare(&key, order.down).is_le());
+        found.insert(place, (key, at));
+    }
+    let mut rows: Vec<usize> = found.into_iter().map(|(_, at)| at).collect();
+    if order.column == Column::Place && order.down {
+        rows.reverse();
+    }
+    rows
+}
+
+/// The columns of a file of units.
+const COLUMNS: &str = "order,unit,tag,description,type,state,position,scale,host fault A,\
+                       host fault B,unit fault A,unit fault B,faults,age s,response ms\n";
+
+/// Those rows as text for spreadsheets, with commas between the columns for files and tabs for the
+/// clipboard.
+#[must_use]
+pub fn as_text(net: &Net, tags: &Tags, rows: &[usize], now_us: u64, comma: char) -> String {
+    let mut out = COLUMNS.replace(',', &comma.to_string());
+    let bit = |bit: Option<bool>| match bit {
+        Some(true) => "1",
+        Some(false) => "0",
+        None => "",
+    };
+    for at in rows {
+        let Some(unit) = net.units.get(*at) else {
+            continue;
+        };
+        let (said, _) = judge(unit, net.ports.len());
+        let number = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
+        let names: Vec<&str> = said.faults.iter().map(|b| b.member.label).collect();
+        let age = unit.at.map(|at| now_us.saturating_sub(at) / 1_000_000);
+        let took = unit
+            .took
+            .map(|took| format!("{}.{}", took / 1000, took % 1000 / 100));
+        let cells = [
+            (at + 1).to_string(),
+            unit.info.unit.to_string(),
+            tags.tag(unit).to_owned(),
+            tags.description(unit).to_owned(),
+            unit.info.kind.clone(),
+            said.state.clone(),
+            number(said.position.map(u64::from)),
+            tags.scaling(unit.info.unit).key().to_owned(),
+            bit(unit.fault[0]).to_owned(),
+            bit(unit.fault[1]).to_owned(),
+            bit(said.channels[0]).to_owned(),
+            bit(said.channels[1]).to_owned(),
+            names.join("; "),
+            number(age),
+            took.unwrap_or_default(),
+        ];
+        for (at, cell) in cells.iter().enumerate() {
+            if at > 0 {
+                out.push(comma);
+            }
+            quoted(&mut out, cell, comma);
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// A cell of a CSV file. One that a spreadsheet would take for a formula is kept from it.
+fn quoted(out: &mut String, cell: &str, comma: char) {
+    let formula = cell.starts_with(['=', '+', '-', '@']);
+    if formula || cell.contains([comma, '"', '\n', '\r']) {
+        out.push('"');
+        if formula {
+            out.push('\'');
+        }
+        out.push_str(&cell.replace('"', "\"\""));
+        out.push('"');
+    } else {
+        out.push_str(cell);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::net::tests::{network, poll};
+    use super::*;
+    use shared::proto::DdcShape;
+
+    const GOOD: [Option<bool>; 2] = [Some(false), Some(false)];
+
+    fn net() -> Net {
+        let mut net = network(4, DdcShape::Loop, 2);
+        poll(&mut net, 1, GOOD, &[10, 0x0802, 0, 0, 0, 0, 0, 0, 0]);
+        poll(&mut net, 2, GOOD, &[90, 0x1004, 0, 0, 0, 0, 0, 0, 0]);
+        poll(&mut net, 3, [Some(true), Some(true)], &[]);
+        net.units[1].at = Some(1_000_000);
+        net.units[1].took = Some(162_400);
+        net
+    }
+
+    fn sorted(text: &str) -> Vec<usize> {
+        rows(&net(), &Tags::default(), Order::parse(text), "", false)
+    }
+
+    #[test]
+    fn the_worst_comes_first() {
+        assert_eq!(sorted(""), [2, 1, 3, 0]);
+        assert_eq!(sorted("-worst"), [0, 3, 1, 2]);
+        assert_eq!(sorted("place"), [0, 1, 2, 3]);
+        assert_eq!(sorted("-unit"), [3, 2, 1, 0]);
+        assert_eq!(
+            sorted("-position"),
+            [1, 0, 2, 3],
+            "what is not known is last"
+        );
+        assert_eq!(sorted("age"), [0, 1, 2, 3]);
+        assert_eq!(sorted("-age"), [1, 0, 2, 3]);
+        assert_eq!(sorted("-response"), [1, 0, 2, 3]);
+        assert_eq!(sorted("-status"), [1, 0, 2, 3]);
+        assert_eq!(sorted("-tag"), [3, 2, 1, 0]);
+        assert_eq!(sorted("-place"), [3, 2, 1, 0]);
+    }
+
+    #[test]
+    fn units_are_found_by_their_words() {
+        let find = |query, faults| {
+            rows(
+                &net(),
+                &Tags::default(),
+                Order::parse("place"),
+                query,
+                faults,
+            )
+        };
+        assert_eq!(find("torque", false), [1]);
+        assert_eq!(find("mov-003", false), [2]);
+        assert_eq!(find("off-line", false), [2]);
+        assert_eq!(find("uec closed", false), [0]);
+        assert_eq!(find("", true), [1, 2]);
+        assert_eq!(find("nonsense", false), [0_usize; 0]);
+    }
+
+    #[test]
+    fn a_row_as_csv() {
+        let mut net = net();
+        net.units[1].info.tag = "=MOV \"2\", x".into();
+        let csv = as_text(&net, &Tags::default(), &[1, 2], 3_000_000, ',');
+        let lines: Vec<_> = csv.lines().collect();
+        assert_eq!(
+            lines[1],
+            "2,2,\"'=MOV \"\"2\"\", x\",,ddc100-uec,stopped,90,0-100,0,0,0,0,Open torque switch fault,2,162.4"
+        );
+        assert_eq!(
+            lines[2],
+            "3,3,MOV-003,,ddc100-uec,status not read,,0-100,1,1,,,,,"
+        );
+    }
+}

@@ -1,0 +1,284 @@
+//! What the program knows, as signals: the network that is shown, its tags, the clock.
+
+use std::cell::Cell;
+use std::rc::Rc;
+use std::time::Duration;
+
+use leptos::prelude::*;
+use shared::proto::{Block, DdcAsk, DdcNews, DeviceInfo, ToPage};
+
+use super::state::net::Net;
+use super::state::tags::Tags;
+use crate::browser::{remember, remembered};
+use crate::erased::{effect, memo};
+use crate::format::{decode, encode};
+use crate::guest::Guest;
+use crate::state::wire;
+
+/// How long news are gathered before the screen is drawn anew.
+const GATHER: Duration = Duration::from_millis(200);
+
+/// The store.
+#[derive(Clone, Copy, Debug)]
+pub struct Store {
+    guest: Guest,
+    /// Tag of the unit whose page is shown; empty on the screens of a network.
+    pub tag: Memo<String>,
+    /// The network that is shown; empty offline.
+    pub bus: Memo<String>,
+    /// The open tab.
+    pub tab: Memo<String>,
+    /// True while there is a connection.
+    pub online: Memo<bool>,
+    /// The networks of the bridge, and the units on them.
+    pub devices: RwSignal<Vec<DeviceInfo>>,
+    /// The network.
+    pub net: RwSignal<Net>,
+    /// What the browser knows of its units.
+    pub tags: RwSignal<Tags>,
+    /// The unit that is being polled, and on which port.
+    pub poll: RwSignal<Option<(u8, u8)>>,
+    /// The unit that is chosen in the drawing, by its place.
+    pub chosen: RwSignal<Option<usize>>,
+    /// Microseconds of the backend's clock, once a second.
+    pub now_us: RwSignal<u64>,
+    next: StoredValue<u32>,
+    dirty: StoredValue<Rc<Cell<bool>>, LocalStorage>,
+}
+
+impl Store {
+    /// Listens to the page and makes the store available.
+    pub fn provide() -> Self {
+        let guest = Guest::get();
+        let place = guest.place;
+        let devices = RwSignal::new(Vec::<DeviceInfo>::new());
+        let tag = memo(move || place.with(|p| p.device.clone().unwrap_or_default()));
+        let path = memo(move || place.with(|p| p.tab.clone()));
+        let bus = memo(move || {
+            let tag = tag.get();
+            if tag.is_empty() {
+                return path.with(|path| bus_of(path));
+            }
+            devices.with(|all| {
+                let found = all.iter().find(|d| d.tag == tag);
+                found.map_or_else(String::new, |d| d.bus.clone())
+            })
+        });
+        let store = Self {
+            guest,
+            tag,
+            bus,
+            tab: memo(move || path.with(|path| tab_of(path))),
+            online: memo(move || place.with(|p| p.online)),
+            devices,
+            net: RwSignal::new(Net::default()),
+            tags: RwSignal::new(Tags::default()),
+            poll: RwSignal::new(None),
+            chosen: RwSignal::new(None),
+            now_us: RwSignal::new(guest.now_us()),
+            next: StoredValue::new(first_id()),
+            dirty: StoredValue::new_local(Rc::default()),
+        };
+        provide_context(store);
+        let clock = set_interval_with_handle(
+            move || store.now_us.set(guest.now_us()),
+            Duration::from_secs(1),
+        );
+        guest.listen(move |text| store.hear(text));
+        store.follow();
+        on_cleanup(move || {
+            if let Ok(clock) = clock {
+                clock.clear();
+            }
+            if let Some(bus) = store.bus.try_get_untracked().filter(|bus| !bus.is_empty()) {
+                store.send(&DdcAsk::Leave { bus });
+            }
+        });
+        store
+    }
+
+    /// The store of this program.
+    #[must_use]
+    pub fn get() -> Self {
+        expect_context()
+    }
+
+    /// A setting of the address.
+    #[must_use]
+    pub fn query(self, key: &str) -> String {
+        self.guest
+            .place
+            .with(|p| p.get(key).unwrap_or_default().to_owned())
+    }
+
+    /// Goes to an address of the page.
+    pub fn go(self, hash: &str) {
+        self.guest.go(hash);
+    }
+
+    /// Changes a setting of the screen; an empty one is left out.
+    pub fn set_query(self, key: &str, value: &str) {
+        let hash = self.guest.place.with_untracked(|place| {
+            let mut all: Vec<_> = place
+                .query
+                .iter()
+                .filter(|(k, _)| k != key)
+                .map(|(k, v)| (k.as_str(), v.as_str()))
+                .collect();
+            if !value.is_empty() {
+                all.push((key, value));
+            }
+            let mut hash = format!("#/network/{}", place.tab);
+            for (at, (key, value)) in all.iter().enumerate() {
+                hash.push(if at == 0 { '?' } else { '&' });
+                hash.push_str(&format!("{}={}", encode(key), encode(value)));
+            }
+            hash
+        });
+        self.go(&hash);
+    }
+
+    /// Follows the network that the address names.
+    fn follow(self) {
+        let store = self;
+        let wanted = memo(move || (store.bus.get(), store.online.get()));
+        let followed = StoredValue::new(String::new());
+        effect(move || {
+            let (bus, online) = wanted.get();
+            let before = followed.get_value();
+            if before != bus {
+                if online && !before.is_empty() {
+                    store.send(&DdcAsk::Leave { bus: before });
+                }
+                store.net.set(Net::default());
+                store.chosen.set(None);
+                let kept = remembered(&kept_key(&bus)).unwrap_or_default();
+                store.tags.set(Tags::from_text(&kept));
+            }
+            store.poll.set(None);
+            if online && !bus.is_empty() {
+                store.send(&DdcAsk::Follow { bus: bus.clone() });
+            } else {
+                store.net.update(Net::lost);
+            }
+            followed.set_value(bus);
+        });
+    }
+
+    fn hear(self, text: &str) {
+        let Some(bus) = self.bus.try_get_untracked() else {
+            // The program is closed.
+            return;
+        };
+        let Some(news) = wire::ddc::read(text) else {
+            if let Ok(ToPage::Hello { mut devices, .. }) = wire::read(text) {
+                devices.retain(|d| d.kind.starts_with("ddc100"));
+                self.devices.set(devices);
+            }
+            return;
+        };
+        if *bus_named(&news) != bus {
+            return;
+        }
+        if let DdcNews::Poll { unit, port, .. } = news {
+            self.poll.set(Some((unit, port)));
+            return;
+        }
+        self.net.update_untracked(|net| net.hear(news));
+        self.draw_soon();
+    }
+
+    /// Draws once for all news of a moment.
+    fn draw_soon(self) {
+        let Some(dirty) = self.dirty.try_get_value() else {
+            return;
+        };
+        if !dirty.replace(true) {
+            set_timeout(
+                move || {
+                    dirty.set(false);
+                    // The program may be closed by now.
+                    if self.net.try_with_untracked(|_| ()).is_some() {
+                        self.net.notify();
+                    }
+                },
+                GATHER,
+            );
+        }
+    }
+
+    fn send(self, ask: &DdcAsk) {
+        self.guest.send(&wire::ddc::write(ask));
+    }
+
+    /// Reads registers of a unit once.
+    pub fn read(self, unit: u8, block: Block) {
+        let id = self.next.get_value();
+        self.next.set_value(id.wrapping_add(1));
+        let bus = self.bus.get_untracked();
+        self.net.update(|net| net.ask(id, unit));
+        self.send(&DdcAsk::Read {
+            id,
+            bus,
+            unit,
+            block,
+        });
+    }
+
+    /// Changes what the browser knows of the units, and keeps it.
+    pub fn set_tags(self, tags: Tags) {
+        let bus = self.bus.get_untracked();
+        remember(&kept_key(&bus), &tags.to_text());
+        self.tags.set(tags);
+    }
+}
+
+/// The bus that an address names: `Loop%201/tags`.
+fn bus_of(path: &str) -> String {
+    decode(path.split('/').next().unwrap_or_default())
+}
+
+/// The tab that it names.
+fn tab_of(path: &str) -> String {
+    path.split('/').nth(1).map(decode).unwrap_or_default()
+}
+
+fn kept_key(bus: &str) -> String {
+    format!("ddc.tags.{bus}")
+}
+
+const fn bus_named(news: &DdcNews) -> &String {
+    match news {
+        DdcNews::Network { bus, .. }
+        | DdcNews::Unit { bus, .. }
+        | DdcNews::Poll { bus, .. }
+        | DdcNews::Pass { bus, .. }
+        | DdcNews::Port { bus, .. }
+        | DdcNews::Read { bus, .. } => bus,
+    }
+}
+
+/// Numbers of reads begin somewhere, so that news about those of an earlier visit find none.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "some number below two thousand million"
+)]
+fn first_id() -> u32 {
+    (js_sys::Math::random() * 2.0e9) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_names_bus_and_tab() {
+        assert_eq!(bus_of("Loop%201/tags"), "Loop 1");
+        assert_eq!(tab_of("Loop%201/tags"), "tags");
+        assert_eq!((bus_of(""), tab_of("")), (String::new(), String::new()));
+        // A bus that has a slash in its name.
+        assert_eq!(bus_of("a%2Fb"), "a/b");
+        assert_eq!(tab_of("/scan"), "scan");
+    }
+}
