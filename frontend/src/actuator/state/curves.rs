@@ -150,9 +150,12 @@ fn of_file(log: &Log, number: u16, first: u16, opening: bool) -> Trace {
         place: format!("file {number}"),
         opening,
         number: number - first,
-        samples: samples.iter().map(|s| s.and_then(|i| i.number())).collect(),
+        samples: samples
+            .iter()
+            .map(|s| s.and_then(shared::icon3000::Item::number))
+            .collect(),
         time: item("time")
-            .and_then(|i| i.time())
+            .and_then(shared::icon3000::Item::time)
             .map(|t| Y2K + i64::from(t)),
         facts: [
             fact("Electronics", "electronics_temperature"),

@@ -159,7 +159,7 @@ pub fn strokes(dossier: &Dossier, kind: Kind) -> Vec<Stroke> {
 fn of_file(log: &Log, kind: Kind, number: u16) -> Stroke {
     let run = |key: &str| -> Vec<Option<i64>> {
         let items = log.run(key);
-        items.iter().map(|i| i.and_then(|i| i.number())).collect()
+        items.iter().map(|i| i.and_then(Item::number)).collect()
     };
     let runs = ["t_pst_at", "t_ret_at", "t_efs_at"];
     let items = log.head.iter().flatten();

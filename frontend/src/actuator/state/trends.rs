@@ -52,7 +52,7 @@ pub fn charts(dossier: &Dossier, file: u16) -> Vec<Chart> {
                         from: at,
                         to: at,
                         y: item.and_then(|i| Some(field.scale.to_f64(i.number()?))),
-                        text: item.map_or_else(String::new, |i| i.text()),
+                        text: item.map_or_else(String::new, shared::icon3000::Item::text),
                         note: item
                             .filter(|i| i.quality != Quality::Good)
                             .map_or_else(String::new, |i| i.quality.label().to_owned()),
