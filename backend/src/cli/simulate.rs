@@ -1,5 +1,7 @@
 //! `valvescope simulate`: an actuator for other programs.
 
+mod ddc;
+
 use super::serve::{bind, say};
 use super::{DeviceArg, address, asked_to_end, block_on, log_to_stderr, refuse};
 use crate::bus::timing::gap;
@@ -8,6 +10,7 @@ use crate::config::{DeviceConfig, Mode, Parity};
 use crate::serial;
 use crate::sim::{self, Actuators, Pace};
 use clap::ValueEnum;
+use shared::device::Device;
 use shared::sim::DopSetup;
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -32,6 +35,10 @@ pub(super) struct Args {
     /// Modbus RTU on a new pseudo terminal, whose path is printed.
     #[arg(long, group = "line")]
     pty: bool,
+    /// A DDC-100 network of many units on this serial port, or on these two as a loop: its ends at
+    /// host port 1 and 2. `pty` instead of a path makes a pseudo terminal, whose path is printed.
+    #[arg(long, value_name = "PATH", num_args = 1..=2, group = "line")]
+    ddc100: Vec<String>,
     /// Unit address.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=247))]
     unit: u8,
@@ -49,6 +56,8 @@ pub(super) struct Args {
     tag: String,
     #[command(flatten)]
     dop: DopArgs,
+    #[command(flatten)]
+    network: ddc::Args,
 }
 
 /// How a DOP device behaves.
@@ -152,6 +161,14 @@ pub(super) fn run(args: &Args) -> ExitCode {
     log_to_stderr();
     if args.device == DeviceArg::None {
         return refuse("it must be some device; choose icon3000v2, icon3000 or dop");
+    }
+    if Device::from(args.device).is_ddc() {
+        return refuse(
+            "field units are simulated as a network: write --ddc100 PATH, or --ddc100 pty",
+        );
+    }
+    if !args.ddc100.is_empty() {
+        return block_on(ddc::run(&args.network, &args.ddc100, args.baud));
     }
     block_on(simulate(args))
 }

@@ -214,15 +214,33 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// A line that is only pretended, with units and speed of a real one.
+    /// A line that is only pretended, with units and speed of a real one: 8N1.
+    #[must_use]
+    pub fn new(framing: Framing, baud: u32, shortest_gap: Duration) -> Self {
+        Self {
+            framing,
+            character: Duration::from_nanos(10_000_000_000 / u64::from(baud.max(1))),
+            thinks: true,
+            gap: gap(baud).max(shortest_gap),
+        }
+    }
+
+    /// That of a network of the configuration.
     #[must_use]
     pub fn of(ddc: &DdcConfig) -> Self {
         let bits = u64::from(ddc.mode.bits());
         Self {
-            framing: ddc.framing,
             character: Duration::from_nanos(bits * 1_000_000_000 / u64::from(ddc.baud.max(1))),
-            thinks: true,
-            gap: gap(ddc.baud),
+            ..Self::new(ddc.framing, ddc.baud, Duration::ZERO)
+        }
+    }
+
+    /// The same on a line that takes its time itself.
+    #[must_use]
+    pub const fn on_the_wire(self) -> Self {
+        Self {
+            character: Duration::ZERO,
+            ..self
         }
     }
 
