@@ -149,7 +149,7 @@ pub fn start(
     }
     let units: Vec<Unit> = devices
         .iter()
-        .map(|d| Unit::new(d.tag.clone(), d.unit, board.slot()))
+        .map(|d| Unit::new(d.tag.clone(), d.unit, d.device, board.slot()))
         .collect();
     let desk = Desk::new(units.len(), activity);
     let timeout_ms = u32::try_from(timeout.as_millis()).unwrap_or(u32::MAX);

@@ -78,6 +78,11 @@ impl Master {
         self.last
     }
 
+    /// From now on devices may take so long to begin their answers.
+    pub fn set_timeout(&mut self, timeout: Duration) {
+        self.timing.timeout = timeout;
+    }
+
     /// Another port of the same cable was busy until then: this one keeps the same silence.
     pub fn busy_until(&mut self, moment: Instant) {
         self.last = self.last.max(moment);

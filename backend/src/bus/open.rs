@@ -143,6 +143,13 @@ impl Line {
         }
     }
 
+    /// From now on devices may take so long to begin their answers.
+    pub fn set_timeout(&mut self, timeout: std::time::Duration) {
+        if let Self::Serial(master) = self {
+            master.set_timeout(timeout);
+        }
+    }
+
     /// Another port of the same cable was busy until then: this one keeps the same silence.
     pub fn busy_until(&mut self, moment: Instant) {
         if let Self::Serial(master) = self {

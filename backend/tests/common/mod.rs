@@ -7,7 +7,7 @@ use backend::listen::Limited;
 use backend::plant::Plant;
 use backend::ws::Hosts;
 use futures_util::{SinkExt, StreamExt};
-use shared::proto::{DopNews, ToBackend, ToPage, VERSION};
+use shared::proto::{DdcNews, DopNews, ToBackend, ToPage, VERSION};
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -50,6 +50,8 @@ pub struct Page {
     socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
     /// News about diagnostic objects that nobody has looked at yet.
     news: VecDeque<DopNews>,
+    /// News about DDC-100 networks that nobody has looked at yet.
+    ddc: VecDeque<DdcNews>,
 }
 
 impl Page {
@@ -66,6 +68,7 @@ impl Page {
         Ok(Self {
             socket,
             news: VecDeque::new(),
+            ddc: VecDeque::new(),
         })
     }
 
@@ -94,10 +97,15 @@ impl Page {
         loop {
             let next = timeout(WAIT, self.socket.next()).await.expect("a message");
             match next {
-                Some(Ok(Message::Text(text))) => match DopNews::from_text(&text) {
-                    Some(news) => self.news.push_back(news),
-                    None => return Some(serde_json::from_str(&text).unwrap()),
-                },
+                Some(Ok(Message::Text(text))) => {
+                    if let Some(news) = DopNews::from_text(&text) {
+                        self.news.push_back(news);
+                    } else if let Some(news) = DdcNews::from_text(&text) {
+                        self.ddc.push_back(news);
+                    } else {
+                        return Some(serde_json::from_str(&text).unwrap());
+                    }
+                }
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return None,
                 Some(Ok(_)) => {}
             }
@@ -128,5 +136,23 @@ impl Page {
                 self.news.extend(DopNews::from_text(&text));
             }
         }
+    }
+
+    /// Waits for the news about a DDC-100 network that `find` finds.
+    pub async fn ddc<T>(&mut self, mut find: impl FnMut(DdcNews) -> Option<T>) -> T {
+        let search = async {
+            loop {
+                while let Some(news) = self.ddc.pop_front() {
+                    if let Some(found) = find(news) {
+                        return found;
+                    }
+                }
+                let next = self.socket.next().await.expect("the backend closed");
+                if let Ok(Message::Text(text)) = next {
+                    self.ddc.extend(DdcNews::from_text(&text));
+                }
+            }
+        };
+        timeout(WAIT, search).await.expect("what is looked for")
     }
 }

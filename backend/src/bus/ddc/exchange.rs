@@ -2,11 +2,13 @@
 
 use super::Actor;
 use super::port::Port;
+use crate::bus::timing::Timing;
 use crate::bus::{Answer, Fault};
-use shared::ddc100::HostPort;
+use shared::ddc100::{HostPort, timing};
 use shared::encode::Read;
 use std::io;
 use std::pin::pin;
+use std::time::Duration;
 use tokio::time::{Instant, sleep_until};
 
 impl Actor {
@@ -35,13 +37,19 @@ impl Actor {
             port.drive(port.number == number);
         }
         let quiet = self.quiet_from;
-        let Some(address) = self.units.get(at).map(|u| u.address) else {
+        let Some(unit) = self.units.get(at) else {
             return Err(io::Error::from(io::ErrorKind::NotFound).into());
         };
+        let (address, setup) = (unit.address, self.poller.setup());
+        // A long answer takes longer, and so does the unit (reading D24).
+        let timeout = timing::timeout(setup.line, unit.kind, &read, setup.timeout_us);
+        let timeout = Duration::from_micros(timeout);
         let mut active = None;
         let mut other = None;
         for port in &mut self.ports {
             if port.number == number {
+                // What is said of a silent unit names it.
+                port.bus.timeout = timeout;
                 active = port.line.as_mut();
             } else {
                 other = Some(port);
@@ -50,6 +58,7 @@ impl Actor {
         let Some(line) = active else {
             return Err(io::Error::from(io::ErrorKind::NotConnected).into());
         };
+        line.set_timeout(timeout);
         line.busy_until(quiet);
         let stray = line.stray();
         let (result, lost) = {
@@ -72,7 +81,11 @@ impl Actor {
                 self.lost(number, error);
             }
             Err(fault) if fault.is_open() => {
-                let quarantine = self.timing.quarantine(read.response_len(), false);
+                let timing = Timing {
+                    timeout,
+                    ..self.timing
+                };
+                let quarantine = timing.quarantine(read.response_len(), false);
                 if let Some(unit) = self.units.get_mut(at) {
                     unit.doubts.add(read, now, quarantine);
                 }

@@ -4,6 +4,7 @@ use super::doubts::Doubts;
 use crate::bus::schedule::Plan;
 use shared::capture::Micros;
 use shared::ddc100::{FaultTable, HostPort};
+use shared::device::Device;
 use shared::encode::Read;
 use shared::proto::{DdcNews, Outcome};
 use shared::render::hex;
@@ -31,6 +32,7 @@ struct Good {
 pub(super) struct Unit {
     pub tag: String,
     pub address: u8,
+    pub kind: Device,
     /// Where its state is posted.
     pub slot: usize,
     /// What pages watch on it.
@@ -48,10 +50,11 @@ pub(super) struct Unit {
 
 impl Unit {
     /// A unit of which nothing is known.
-    pub fn new(tag: String, address: u8, slot: usize) -> Self {
+    pub fn new(tag: String, address: u8, kind: Device, slot: usize) -> Self {
         Self {
             tag,
             address,
+            kind,
             slot,
             plan: Plan::default(),
             doubts: Doubts::default(),

@@ -252,3 +252,45 @@ fn log_commands_follow_the_profile() {
     let options: Vec<u16> = (0..16).filter(|o| known(*o)).collect();
     assert_eq!(options, [5, 6, 7, 8, 9]);
 }
+
+/// Field units of a DDC-100 network are read and nothing else: no command (function 05 and 06 on
+/// coils 1 to 9 and register 1, with every value), no preset, no reset, whatever their type.
+#[test]
+fn nothing_moves_a_field_unit() {
+    let kinds = Device::ALL.into_iter().filter(|d| d.is_ddc());
+    // Not even a profile opens a way.
+    let devices: Vec<_> = (1..)
+        .zip(kinds)
+        .map(|(unit, kind)| device(unit, kind, Some(AT_4000)))
+        .collect();
+    assert_eq!(devices.len(), 5);
+    let gate = Gate::of(&devices);
+    let allowed = [1, 2, 3, 4, 7, 8, 11, 12, 17, 20, 24, 43];
+    for unit in 0..=5 {
+        for pdu in every_function() {
+            assert_eq!(
+                passes(&gate, unit, &pdu),
+                allowed.contains(&pdu[0]),
+                "{pdu:?}"
+            );
+        }
+        for coil in 0..9 {
+            for value in [0x0000, 0xFF00] {
+                let mut pdu = fc6(coil, value);
+                pdu[0] = 5;
+                assert!(!passes(&gate, unit, &pdu), "{pdu:?}");
+            }
+        }
+    }
+    for value in 0..=u16::MAX {
+        for pdu in [fc6(0, value), fc16(0, value), fc6(4000, value)] {
+            let bytes = frame(Framing::Rtu, 0, 1, &pdu);
+            assert!(gate.admit(Framing::Rtu, &bytes).is_err(), "{pdu:?}");
+        }
+    }
+    // Clearing counters and restarting are functions 08.
+    for sub in 1..=300_u16 {
+        let [high, low] = sub.to_be_bytes();
+        assert!(!passes(&gate, 1, &[8, high, low, 0, 0]), "{sub}");
+    }
+}
