@@ -24,7 +24,16 @@ thread_local! {
 #[derive(Default)]
 struct Kept {
     sites: Vec<Site>,
-    saved: Vec<Arc<Dossier>>,
+    saved: Vec<Saved>,
+}
+
+/// A saved device that is open.
+#[derive(Clone, Debug)]
+pub struct Saved {
+    /// What it says.
+    pub dossier: Arc<Dossier>,
+    /// What is wrong with its file.
+    pub problems: Vec<String>,
 }
 
 /// The device on the line.
@@ -53,7 +62,7 @@ pub struct Store {
     /// The device on the line.
     pub site: RwSignal<Site>,
     /// Saved devices that are open.
-    pub saved: RwSignal<Vec<Arc<Dossier>>>,
+    pub saved: RwSignal<Vec<Saved>>,
     /// Seconds since 1970, once a second.
     pub now: RwSignal<i64>,
     /// Microseconds of the backend's clock, once a second.
@@ -164,7 +173,7 @@ impl Store {
         }
         let at = self.index().unwrap_or(0);
         self.saved.with(|saved| match saved.get(at) {
-            Some(dossier) => look(dossier),
+            Some(saved) => look(&saved.dossier),
             None => look(&Dossier::default()),
         })
     }
@@ -190,7 +199,7 @@ impl Store {
         }) = wire::read(text)
         {
             let found = devices.iter().find(|d| d.tag == tag);
-            let device = found.and_then(|d| Device::from_key(&d.kind));
+            let device = found.and_then(|d| Some((Device::from_key(&d.kind)?, d.unit)));
             let start = wall_ms.saturating_sub(now_us / 1000);
             self.site.update(|site| site.greeted(device, start));
         }
@@ -259,10 +268,20 @@ impl Store {
         }
     }
 
-    /// Opens a saved device; its place among those that are open.
-    pub fn open(self, dossier: Dossier) -> usize {
-        self.saved.update(|saved| saved.push(Arc::new(dossier)));
-        self.saved.with_untracked(Vec::len).saturating_sub(1)
+    /// Opens a saved device.
+    pub fn open(self, dossier: Dossier, problems: Vec<String>) {
+        let dossier = Arc::new(dossier);
+        self.saved
+            .update(|saved| saved.push(Saved { dossier, problems }));
+    }
+
+    /// Closes a saved device.
+    pub fn close(self, at: usize) {
+        self.saved.update(|saved| {
+            if at < saved.len() {
+                saved.remove(at);
+            }
+        });
     }
 
     /// Devices on the line that were read since the page was opened.
@@ -304,7 +323,7 @@ impl Site {
     }
 
     /// A backend said hello. Its clock may be another one than before: then no time in here counts.
-    fn greeted(&mut self, device: Option<Device>, start_wall_ms: u64) {
+    fn greeted(&mut self, device: Option<(Device, u8)>, start_wall_ms: u64) {
         let before = self.dossier.start_wall_ms;
         if before != 0 && before.abs_diff(start_wall_ms) > 5000 {
             self.dossier = Dossier::new(&self.dossier.tag, Device::None);
@@ -312,7 +331,9 @@ impl Site {
             self.broken = None;
         }
         self.dossier.start_wall_ms = start_wall_ms;
-        self.dossier.device = device.unwrap_or_default();
+        let (device, unit) = device.unwrap_or_default();
+        self.dossier.device = device;
+        self.dossier.unit = unit;
     }
 
     /// Takes news in; what to ask for next, if something is still missing.

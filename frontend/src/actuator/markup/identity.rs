@@ -1,21 +1,252 @@
-//! Who the device is: its registers, its answer to FC 17, its cards.
+//! Who the device is: what function 17, the registers and the cards say, and whether they agree.
 
-use shared::address::Table;
-use shared::map::row::{Access, Kind, Row};
+use shared::icon3000::identity::{Fact, REPORT, Report, detect, facts};
+use shared::icon3000::model::READINGS;
+use shared::proto::Outcome;
+use shared::render::Spaced;
 
-use crate::actuator::state::dossier::Dossier;
+use super::{heading, reading};
+use crate::actuator::state::dossier::{Dossier, Subject};
+use crate::actuator::state::saved::model;
+use crate::markup::Markup;
 
-/// Groups of registers that say who it is.
-const GROUPS: [&str; 2] = ["Identity", "Valve"];
-
-/// Registers that say who the device is, in the order of the map.
-#[must_use]
-pub fn registers(dossier: &Dossier) -> Vec<&'static Row> {
-    let Some(map) = dossier.device.map() else {
-        return Vec::new();
+/// Everything about who the device is.
+pub fn identity(html: &mut Markup, dossier: &Dossier) {
+    let pdu = dossier.identity.as_ref().map(|a| a.pdu.as_slice());
+    let report = pdu.and_then(Report::of_pdu);
+    which(html, dossier, report.as_ref());
+    let Some(model) = model(dossier.device) else {
+        return;
     };
-    let rows = map.rows_of(Table::Holding).iter().copied();
-    rows.filter(|row| GROUPS.contains(&row.group))
-        .filter(|row| row.kind != Kind::Reserved && row.access != Access::Absent)
-        .collect()
+    let all = facts(model, &dossier.image, report.as_ref(), &dossier.all_files());
+    let (cards, told): (Vec<_>, Vec<_>) = all.iter().partition(|f| f.from.starts_with("file"));
+    heading(html, "What it says of itself", "");
+    if told.is_empty() {
+        html.open("p", &[("class", "empty"), ("data-testid", "icon-nothing")]);
+        html.text("Nothing was read yet.").close("p");
+    } else {
+        table(html, &told);
+    }
+    server_id(html, dossier, report.as_ref());
+    heading(html, "Card reports", "files 5300 to 5304, table 49");
+    if cards.is_empty() {
+        html.node("p", "quiet", "None was read.");
+    }
+    let mut name = "";
+    let mut of_card: Vec<&Fact> = Vec::new();
+    for fact in cards {
+        if fact.from != name {
+            card(html, name, &of_card);
+            of_card.clear();
+            name = &fact.from;
+        }
+        of_card.push(fact);
+    }
+    card(html, name, &of_card);
+}
+
+/// Which model it is, and why.
+fn which(html: &mut Markup, dossier: &Dossier, report: Option<&Report>) {
+    let refused = |start: u16| {
+        let failure = dossier.failed.get(&Subject::Block(3, start))?;
+        Some(failure.outcome == Outcome::Exception)
+    };
+    let guess = detect(&dossier.image, report, refused(3480), refused(3000));
+    html.open("p", &[("class", "icon-lead"), ("data-testid", "model")]);
+    match guess.model {
+        Some(model) => {
+            html.text("It is an ")
+                .node("b", "", model.map().name)
+                .text(".");
+        }
+        None => {
+            html.text("Which model it is, is not known.");
+        }
+    }
+    html.text(" ").node("span", "quiet", &guess.why);
+    let configured = dossier.device.map().map(|map| map.model);
+    if let (Some(found), Some(set)) = (guess.model, configured)
+        && found != set
+    {
+        html.text(" ");
+        html.severity(shared::problem::Severity::Warning);
+        html.text(&format!(
+            " The configuration says {}; change it to see all that this one has.",
+            set.map().name
+        ));
+    }
+    html.close("p");
+}
+
+/// Statements, one a row.
+fn table(html: &mut Markup, facts: &[&Fact]) {
+    html.open("div", &[("class", "icon-table")]);
+    html.open("table", &[("class", "plain identity")])
+        .open("thead", &[])
+        .open("tr", &[]);
+    for name in ["What", "Value", "From", "Source"] {
+        html.open("th", &[("scope", "col")]).text(name).close("th");
+    }
+    html.close("tr").close("thead").open("tbody", &[]);
+    let mut before = "";
+    for fact in facts {
+        html.open(
+            "tr",
+            &[
+                ("data-testid", "identity"),
+                ("data-key", fact.key),
+                ("data-from", &fact.from),
+            ],
+        );
+        html.open("th", &[("scope", "row")]);
+        if before == fact.key {
+            html.node("span", "quiet", "the same");
+        } else {
+            html.text(fact.label);
+        }
+        html.close("th");
+        before = fact.key;
+        html.open("td", &[]).node("b", "", &fact.value);
+        if fact.disputed {
+            html.text(" ")
+                .node("em", "quality", "says otherwise elsewhere");
+        }
+        html.close("td");
+        html.node("td", "", &fact.from);
+        html.node("td", "quiet", &fact.source.to_string())
+            .close("tr");
+    }
+    html.close("tbody").close("table").close("div");
+}
+
+/// The answer to function 17 as it came.
+fn server_id(html: &mut Markup, dossier: &Dossier, report: Option<&Report>) {
+    heading(html, "Report of server ID", "FC 17, section 8.10");
+    let Some(answer) = &dossier.identity else {
+        html.node("p", "quiet", "It was not read.");
+        return;
+    };
+    html.open("p", &[("data-testid", "report")]);
+    match report {
+        Some(report) => {
+            let words = match report.count {
+                0x52 => {
+                    "Byte count 0x52 (82): as the manual prints it, without server ID and run indicator, which the standard counts in."
+                }
+                _ => {
+                    "Byte count 0x54 (84): as the standard counts, with server ID and run indicator; the manual prints 0x52."
+                }
+            };
+            html.text(words);
+            html.text(&format!(
+                " Server ID {}, run indicator {}.",
+                report.server_id, report.run
+            ));
+        }
+        None => {
+            html.text("The answer has not the 84 bytes that the manual describes, so nothing of it is shown but its bytes.");
+        }
+    }
+    for id in ["E63", "E64"] {
+        if let Some(read) = READINGS.iter().find(|r| r.id == id) {
+            html.text(" ");
+            reading(html, read);
+        }
+    }
+    html.text(" ").node("span", "quiet", &REPORT.to_string());
+    html.close("p");
+    html.open("details", &[("class", "raw")]);
+    html.open("summary", &[]).text("Bytes").close("summary");
+    html.node("code", "mono wrap", &Spaced(&answer.pdu).to_string());
+    html.close("details");
+}
+
+/// One card.
+fn card(html: &mut Markup, name: &str, facts: &[&Fact]) {
+    if facts.is_empty() {
+        return;
+    }
+    html.open(
+        "section",
+        &[("class", "icon-card"), ("data-testid", "card")],
+    );
+    html.node("h3", "", name)
+        .open("dl", &[("class", "icon-items")]);
+    for fact in facts {
+        html.open("div", &[("data-key", fact.key)]);
+        html.node("dt", "", fact.label);
+        html.open("dd", &[("title", &fact.source.to_string())]);
+        html.node("b", "", &fact.value).close("dd").close("div");
+    }
+    html.close("dl").close("section");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::markup::rows::tests::device;
+    use crate::actuator::state::logs::tests::put;
+
+    fn drawn(dossier: &Dossier) -> String {
+        let mut html = Markup::new();
+        identity(&mut html, dossier);
+        html.finish()
+    }
+
+    /// The report of table 29: 82 additional bytes, with `count` before them.
+    fn report(count: u8) -> Vec<u8> {
+        let mut pdu = vec![0x11, count, 0, 0];
+        for (text, len) in [
+            ("Biffi ICON3000", 16),
+            ("SER-1", 28),
+            ("XV-101", 28),
+            ("9.02", 4),
+            ("", 2),
+            ("4.01", 4),
+        ] {
+            pdu.extend(format!("{text:<len$}").bytes());
+        }
+        pdu
+    }
+
+    #[test]
+    fn both_byte_counts_are_explained() {
+        for (count, words) in [
+            (0x52, "as the manual prints it"),
+            (0x54, "as the standard counts"),
+        ] {
+            let mut dossier = device(&[]);
+            assert!(dossier.absorb(&[0x11], &report(count), 1));
+            let html = drawn(&dossier);
+            for part in [words, "ICON3000v2", "SER-1", "4.01", "E63", "FC 17"] {
+                assert!(html.contains(part), "{part}: {html}");
+            }
+        }
+    }
+
+    /// The tag in HR 3056 says something else than function 17.
+    #[test]
+    fn what_disagrees_is_marked() {
+        let mut words = [0x2020; 14];
+        words[0] = 0x5A5A;
+        let mut dossier = device(&[(3056, &words)]);
+        assert!(dossier.absorb(&[0x11], &report(0x52), 1));
+        let html = drawn(&dossier);
+        assert_eq!(
+            html.matches("says otherwise elsewhere").count(),
+            2,
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn cards_stand_apart() {
+        let mut dossier = device(&[]);
+        put(&mut dossier, 5300, &[0x4142; 32]);
+        put(&mut dossier, 5304, &[0x4344; 32]);
+        let html = drawn(&dossier);
+        assert_eq!(html.matches("data-testid=\"card\"").count(), 2, "{html}");
+        assert!(html.contains("Base Card") && html.contains("ABABABABAB"));
+        assert!(drawn(&device(&[])).contains("Which model it is, is not known"));
+    }
 }

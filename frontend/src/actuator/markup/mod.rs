@@ -3,9 +3,11 @@
 pub mod communication;
 pub mod configuration;
 pub mod curves;
+pub mod health;
 pub mod identity;
 pub mod logs;
 pub mod rows;
+pub mod snapshots;
 pub mod tools;
 
 use shared::map::row::{Reading, Settled};

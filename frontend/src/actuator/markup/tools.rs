@@ -78,16 +78,41 @@ pub fn reads(html: &mut Markup, site: &Site, online: bool, now_us: u64, what: &[
         }
     }
     html.close("span");
+    html.node("span", "toolbar-gap", "");
+    Button {
+        act: "whole",
+        testid: "icon-whole",
+        words: "Read whole device",
+        glyph: Some(Glyph::Poll),
+        disabled: !idle,
+        ..Button::default()
+    }
+    .draw(html);
+    Button {
+        act: "save",
+        testid: "icon-save",
+        words: "Save snapshot",
+        glyph: Some(Glyph::Save),
+        disabled: site.dossier.is_empty() || site.job.is_some(),
+        ..Button::default()
+    }
+    .draw(html);
 }
 
-/// In place of the buttons: where the data of a saved device are from.
+/// In place of the buttons: whose data a saved device are, and when they were read.
 pub fn origin(html: &mut Markup, dossier: &Dossier) {
     html.open(
         "span",
-        &[("class", "quiet"), ("data-testid", "icon-origin")],
+        &[("class", "icon-origin"), ("data-testid", "icon-origin")],
     );
-    html.text("Saved in ").node("b", "", &dossier.origin);
-    html.close("span");
+    html.node("b", "", &dossier.tag);
+    html.text(&format!(" · {} · ", dossier.device.label()));
+    let place = format!(
+        "saved in {} · {} UTC",
+        dossier.origin,
+        stamp(dossier.wall(0))
+    );
+    html.node("span", "quiet", &place).close("span");
 }
 
 /// What was asked for and did not come, for subjects that a screen shows.

@@ -3,6 +3,7 @@
 mod curves;
 mod logs;
 mod registers;
+mod snapshots;
 
 use std::sync::Arc;
 
@@ -53,8 +54,9 @@ pub fn Actuator() -> impl IntoView {
         "configuration" => view! { <registers::ConfigurationPage/> }.into_any(),
         "curves" => view! { <curves::CurvesPage/> }.into_any(),
         "logs" => view! { <logs::LogsPage/> }.into_any(),
+        "health" => view! { <registers::HealthPage/> }.into_any(),
         "identity" => view! { <registers::IdentityPage/> }.into_any(),
-        _ => view! { <p class="empty">"Choose a tab."</p> }.into_any(),
+        _ => view! { <snapshots::SnapshotsPage/> }.into_any(),
     });
     view! {
         <div class="icon3000" data-testid="icon">

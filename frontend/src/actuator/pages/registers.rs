@@ -1,15 +1,16 @@
-//! Screens that show registers: configuration, communication, identity.
+//! Screens that are drawn as they are read: configuration, communication, identity, health.
 
 use std::sync::Arc;
 
 use leptos::prelude::*;
-use shared::map::row::Row;
 
+use super::{charts, save};
 use crate::actuator::markup::configuration::{self, Filter};
 use crate::actuator::markup::rows::{Around, list};
-use crate::actuator::markup::{communication, identity, tools};
+use crate::actuator::markup::{communication, heading, health as markup_health, identity, tools};
 use crate::actuator::state::dossier::{Dossier, Subject};
 use crate::actuator::state::wanted::{COUNTERS, Wanted};
+use crate::actuator::state::{health, rates, saved};
 use crate::actuator::store::Store;
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::erased::{effect, memo};
@@ -88,6 +89,22 @@ pub(super) fn on_tool(store: Store, act: &Act, wanted: fn(&Dossier) -> Wanted) -
     match act.name.as_str() {
         "cancel" => store.cancel(),
         "resume" => store.resume(),
+        "whole" => {
+            let wanted = store
+                .site
+                .with_untracked(|s| Wanted::everything(&s.dossier));
+            store.read(wanted);
+        }
+        "save" => {
+            let now = store.now.get_untracked();
+            let saved = store
+                .site
+                .with_untracked(|s| saved::snapshot(&s.dossier, now));
+            if let Some(saved) = saved {
+                let name = format!("{}-snapshot", saved.tag);
+                save(&name, "json", &saved.to_text());
+            }
+        }
         "read" => {
             let wanted = store.site.with_untracked(|s| wanted(&s.dossier));
             store.read(wanted);
@@ -159,72 +176,156 @@ fn channels(dossier: &Dossier) -> Wanted {
         counters: COUNTERS.to_vec(),
         ..Wanted::default()
     }
-    .rows(communication::registers(dossier).into_iter())
+    .rows(communication::all_registers(dossier).into_iter())
 }
+
+/// How often the counters are read while that is on, in seconds.
+const PERIOD: i64 = 5;
 
 /// The Modbus interface of the device.
 #[component]
 pub(super) fn CommunicationPage() -> impl IntoView {
     let store = Store::get();
+    let opened: Opened = RwSignal::new(Vec::new());
+    let watched = RwSignal::new(false);
     fill_once(store, channels);
-    registers_page(
-        store,
-        "page-communication",
-        &[("read", "Read counters")],
-        channels,
-        communication::registers,
-        |s| !matches!(s, Subject::File(_) | Subject::Identity),
-    )
+    effect(move || {
+        let due = store.now.get() % PERIOD == 0;
+        if due && watched.get_untracked() {
+            store.read(Wanted {
+                what: "counters".to_owned(),
+                counters: COUNTERS.to_vec(),
+                ..Wanted::default()
+            });
+        }
+    });
+    let counters: Draw = Arc::new(move |html: &mut Markup| {
+        store.with(|d| communication::counters(html, d));
+    });
+    let watch: Draw = Arc::new(move |html: &mut Markup| {
+        if store.is_live() {
+            let rounds = store.with(|d| d.counters.get(&COUNTERS[0]).map_or(0, Vec::len));
+            communication::watch(html, watched.get(), rounds);
+        }
+    });
+    let pictures = memo(move || store.with(|d| rates::chart(d).into_iter().collect::<Vec<_>>()));
+    let lines: Draw = Arc::new(move |html: &mut Markup| {
+        let around = around(store, opened, false);
+        heading(html, "Channels", "");
+        store.with(|d| list(html, d, &communication::registers(d), &around));
+    });
+    let on_act = Callback::new(move |act: Act| {
+        if on_tool(store, &act, channels) {
+            return;
+        }
+        match act.name.as_str() {
+            "watch" => watched.set(!act.value.is_empty()),
+            _ => toggle(store, opened, &act),
+        }
+    });
+    view! {
+        <div class="icon-page" data-testid="page-communication">
+            <Drawn class="toolbar" draw=toolbar(store, &[("read", "Read counters")]) on_act=on_act/>
+            <Drawn
+                class="icon-failed"
+                draw=failures(store, |s| matches!(s, Subject::Block(..) | Subject::Diagnostic(_)))
+            />
+            <Drawn class="icon-body" draw=counters/>
+            <Drawn class="icon-body" draw=watch on_act=on_act/>
+            <div class="icon-body">{charts(pictures)}</div>
+            <Drawn class="icon-groups" draw=lines on_act=on_act/>
+        </div>
+    }
 }
 
 fn who(dossier: &Dossier) -> Wanted {
+    let cards = 5300..=5304;
     Wanted {
         what: "identity".to_owned(),
         identity: true,
+        files: if dossier.device.implements(20) {
+            cards.collect()
+        } else {
+            Vec::new()
+        },
         ..Wanted::default()
     }
-    .rows(identity::registers(dossier).into_iter())
+    .registers(dossier, &WHO)
 }
+
+/// Registers that say who the device is: numbers, tags, versions, types, dates.
+const WHO: [(u16, u16); 6] = [
+    (3000, 1),
+    (3034, 54),
+    (3460, 21),
+    (3654, 2),
+    (3742, 30),
+    (44, 2),
+];
 
 /// Who the device is.
 #[component]
 pub(super) fn IdentityPage() -> impl IntoView {
-    let store = Store::get();
-    fill_once(store, who);
-    registers_page(
-        store,
+    drawn_page(
         "page-identity",
         &[("read", "Read identity")],
         who,
-        identity::registers,
-        |s| !matches!(s, Subject::Diagnostic(_)),
+        |s| match s {
+            Subject::File(file) => (5300..=5304).contains(&file),
+            Subject::Identity | Subject::Block(..) => true,
+            Subject::Diagnostic(_) => false,
+        },
+        |html, _, dossier| identity::identity(html, dossier),
     )
 }
 
-/// A screen that is a list of registers.
-fn registers_page(
-    store: Store,
+fn what_is_wrong(dossier: &Dossier) -> Wanted {
+    let logs = if dossier.device.implements(20) {
+        vec![2, 3]
+    } else {
+        Vec::new()
+    };
+    Wanted {
+        what: "health".to_owned(),
+        files: logs,
+        ..Wanted::default()
+    }
+    .rows(health::rows(dossier).into_iter())
+}
+
+/// What is wrong with the device.
+#[component]
+pub(super) fn HealthPage() -> impl IntoView {
+    drawn_page(
+        "page-health",
+        &[("read", "Read health")],
+        what_is_wrong,
+        |s| matches!(s, Subject::File(2 | 3) | Subject::Block(..)),
+        |html, store, dossier| {
+            markup_health::health(html, dossier, &store.address("logs", ""));
+        },
+    )
+}
+
+/// A screen that is drawn from the device alone.
+fn drawn_page(
     testid: &'static str,
     what: &'static [(&'static str, &'static str)],
     wanted: fn(&Dossier) -> Wanted,
-    rows: fn(&Dossier) -> Vec<&'static Row>,
     shows: fn(Subject) -> bool,
+    draw: fn(&mut Markup, Store, &Dossier),
 ) -> AnyView {
-    let opened: Opened = RwSignal::new(Vec::new());
-    let lines: Draw = Arc::new(move |html: &mut Markup| {
-        let around = around(store, opened, false);
-        store.with(|d| list(html, d, &rows(d), &around));
-    });
+    let store = Store::get();
+    fill_once(store, wanted);
+    let body: Draw = Arc::new(move |html: &mut Markup| store.with(|d| draw(html, store, d)));
     let on_act = Callback::new(move |act: Act| {
-        if !on_tool(store, &act, wanted) {
-            toggle(store, opened, &act);
-        }
+        on_tool(store, &act, wanted);
     });
     view! {
         <div class="icon-page" data-testid=testid>
             <Drawn class="toolbar" draw=toolbar(store, what) on_act=on_act/>
             <Drawn class="icon-failed" draw=failures(store, shows)/>
-            <Drawn class="icon-groups" draw=lines on_act=on_act/>
+            <Drawn class="icon-groups" draw=body/>
         </div>
     }
     .into_any()

@@ -6,7 +6,7 @@ use shared::address::Table;
 use shared::capture::Micros;
 use shared::device::Device;
 use shared::icon3000::records::groups;
-use shared::icon3000::{FileRead, Log, Records};
+use shared::icon3000::{FileRead, Files, Log, Records};
 use shared::image::Image;
 use shared::proto::{IconStep, Outcome, TableName};
 use shared::value::Value;
@@ -25,6 +25,8 @@ pub struct Record {
 /// Why something could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
+    /// What was asked for.
+    pub step: IconStep,
     /// How it ended.
     pub outcome: Outcome,
     /// In words.
@@ -95,6 +97,8 @@ pub struct Dossier {
     pub tag: String,
     /// Its kind.
     pub device: Device,
+    /// Its unit address.
+    pub unit: u8,
     /// Where it is from: empty for the device on the line, else the name of a file.
     pub origin: String,
     /// Milliseconds since 1970 at the moment 0 of all times in here.
@@ -120,6 +124,15 @@ impl Dossier {
             device,
             ..Self::default()
         }
+    }
+
+    /// True if nothing is known of it.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.image.is_empty()
+            && self.files.is_empty()
+            && self.identity.is_none()
+            && self.counters.is_empty()
     }
 
     /// Seconds since 1970 at a time of this device.
@@ -196,9 +209,13 @@ impl Dossier {
 
     /// Notes that something could not be read.
     pub fn fail(&mut self, step: IconStep, outcome: Outcome, text: &str, at: u64) {
-        let text = text.to_owned();
-        self.failed
-            .insert(Subject::of(step), Failure { outcome, text, at });
+        let failure = Failure {
+            step,
+            outcome,
+            text: text.to_owned(),
+            at,
+        };
+        self.failed.insert(Subject::of(step), failure);
     }
 
     /// The records of a file that were read at a time or later.
@@ -212,6 +229,18 @@ impl Dossier {
             }
         }
         records
+    }
+
+    /// The records of all files.
+    #[must_use]
+    pub fn all_files(&self) -> Files {
+        let mut files = Files::default();
+        for &file in self.files.keys() {
+            for (record, word) in self.records(file, 0).iter() {
+                files.entry(file).put(record, [word]);
+            }
+        }
+        files
     }
 
     /// A file as values; `None` if nothing of it was read, or if the manual does not describe it.

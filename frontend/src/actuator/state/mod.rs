@@ -2,8 +2,11 @@
 
 pub mod curves;
 pub mod dossier;
+pub mod health;
 pub mod job;
 pub mod logs;
+pub mod rates;
+pub mod saved;
 pub mod strokes;
 pub mod trends;
 pub mod wanted;

@@ -1,6 +1,6 @@
 //! What a screen needs, and what of it is still to be read.
 
-use shared::address::Table;
+use shared::address::{Address, Table};
 use shared::icon3000::Span;
 use shared::map::plan::plan;
 use shared::map::row::Row;
@@ -28,6 +28,33 @@ pub struct Wanted {
     pub identity: bool,
     /// Counters of FC 08.
     pub counters: Vec<u16>,
+    /// True for every file besides: as many curves as the device says it has stored.
+    pub whole: bool,
+}
+
+/// Files that every device has: logs, recorders, cards.
+const ALWAYS: [u16; 11] = [2, 3, 4, 5000, 5100, 5200, 5300, 5301, 5302, 5303, 5304];
+
+/// Where curves begin, the register that counts them, and how many there can be.
+const CURVES: [(u16, u16, u16); 4] = [
+    (1000, 3511, 100),
+    (2000, 3512, 100),
+    (3000, 3513, 16),
+    (3500, 3514, 16),
+];
+
+/// Every file of a device, as far as it has told how many there are.
+fn every_file(dossier: &Dossier) -> Vec<u16> {
+    if !dossier.device.implements(20) || dossier.device.map().is_none() {
+        return Vec::new();
+    }
+    let mut files = ALWAYS.to_vec();
+    for (first, counter, most) in CURVES {
+        let cell = dossier.image.cell(Table::Holding, Address::new(counter));
+        let stored = cell.map_or(0, |c| c.word.min(most));
+        files.extend(first..=first.saturating_add(stored));
+    }
+    files
 }
 
 impl Wanted {
@@ -59,6 +86,20 @@ impl Wanted {
         self
     }
 
+    /// The whole device.
+    #[must_use]
+    pub fn everything(dossier: &Dossier) -> Self {
+        let rows = dossier.device.map().map_or(&[][..], |map| map.rows);
+        Self {
+            what: "the whole device".to_owned(),
+            identity: true,
+            counters: COUNTERS.to_vec(),
+            whole: true,
+            ..Self::default()
+        }
+        .rows(rows.iter().copied())
+    }
+
     /// What is missing, or older than `since` (microseconds), in the order in which it is read. A
     /// log whose head is missing asks for the head first. At most as many steps as one message may
     /// have; what failed since then is not asked for again.
@@ -85,7 +126,12 @@ impl Wanted {
                 steps.push(IconStep::Diagnostic { sub_function });
             }
         }
-        for &file in &self.files {
+        let every = if self.whole {
+            every_file(dossier)
+        } else {
+            Vec::new()
+        };
+        for &file in self.files.iter().chain(&every) {
             if !gave_up(dossier, Subject::File(file), since) {
                 steps.extend(rest(dossier, file, since));
             }

@@ -1,0 +1,188 @@
+//! What is wrong with the device, why it counts as that, and what to check.
+
+use shared::icon3000::model::{Meaning, Ne107};
+use shared::map::row::Row;
+
+use super::heading;
+use crate::actuator::state::dossier::Dossier;
+use crate::actuator::state::health::{Condition, Past, conditions, past, unread, worst};
+use crate::chart::time::stamp;
+use crate::dop::markup::sign_of;
+use crate::format::count;
+use crate::markup::Markup;
+use crate::markup::device::sign;
+
+/// Entries of the logs that are shown.
+const PAST: usize = 8;
+
+/// The health of a device. `logs` is the address of its logs.
+pub fn health(html: &mut Markup, dossier: &Dossier, logs: &str) {
+    let conditions = conditions(dossier);
+    let unread = unread(dossier);
+    summary(html, &conditions, &unread);
+    let mut last = None;
+    for condition in &conditions {
+        let status = condition.meaning.status;
+        if last != Some(status) {
+            if last.is_some() {
+                html.close("ul");
+            }
+            last = Some(status);
+            heading(html, status.label(), "NAMUR NE 107");
+            html.open("ul", &[("class", "icon-conditions")]);
+        }
+        one(html, condition);
+    }
+    if last.is_some() {
+        html.close("ul");
+    }
+    let past = past(dossier, PAST);
+    if !past.is_empty() {
+        history(html, &past, logs);
+    }
+}
+
+/// The state of the device in one line.
+fn summary(html: &mut Markup, conditions: &[Condition], unread: &[&'static Row]) {
+    html.open(
+        "p",
+        &[("class", "icon-verdict"), ("data-testid", "health-sum")],
+    );
+    match worst(conditions) {
+        Some(status) => {
+            sign(html, sign_of(status), "24");
+            html.text(" ").node("b", "", status.label());
+            let n = u64::try_from(conditions.len()).unwrap_or(0);
+            html.text(&format!(" · {}", count(n, "condition")));
+        }
+        None if unread.is_empty() => {
+            html.text("Good: no alarm, no warning, nothing in the way.");
+        }
+        None => {
+            html.text("Not known.");
+        }
+    }
+    html.close("p");
+    if !unread.is_empty() {
+        html.open("p", &[("class", "quiet"), ("data-testid", "health-unread")]);
+        let names: Vec<_> = unread
+            .iter()
+            .map(|row| format!("{} ({})", row.label, row.address))
+            .collect();
+        html.text(&format!("Not read, so not known: {}.", names.join(", ")));
+        html.close("p");
+    }
+}
+
+/// One condition with its reason and what to check.
+fn one(html: &mut Markup, condition: &Condition) {
+    let meaning = condition.meaning;
+    html.open(
+        "li",
+        &[
+            ("data-testid", "health"),
+            ("data-key", meaning.key),
+            ("data-status", letter(meaning.status)),
+        ],
+    );
+    sign(html, sign_of(meaning.status), "20");
+    html.open("div", &[]);
+    html.node("b", "", meaning.label);
+    told(html, meaning);
+    let row = condition.row;
+    let place = format!(
+        "{} {} bit {} · raw {:04X} · {}",
+        row.table.label(),
+        row.address,
+        meaning.value,
+        condition.word,
+        row.source
+    );
+    html.node("p", "quiet proof", &place)
+        .close("div")
+        .close("li");
+}
+
+/// Why it is in its category, and what to check.
+fn told(html: &mut Markup, meaning: &Meaning) {
+    html.node("p", "", meaning.reason);
+    html.open("p", &[]);
+    html.node("span", "quiet", "Check: ")
+        .text(meaning.check)
+        .close("p");
+}
+
+/// The letter of a category.
+const fn letter(status: Ne107) -> &'static str {
+    sign_of(status).letter()
+}
+
+/// What the logs tell.
+fn history(html: &mut Markup, past: &[Past], logs: &str) {
+    heading(html, "Lately", "from the logs of the device, its own clock");
+    html.open("ul", &[("class", "icon-conditions past")]);
+    for entry in past {
+        html.open("li", &[("data-testid", "health-past")]);
+        sign(html, sign_of(entry.meaning.status), "18");
+        html.open("div", &[]);
+        html.node("b", "", entry.meaning.label).text(" ");
+        let when = entry.time.map_or_else(|| "no date".to_owned(), stamp);
+        html.node("span", "quiet", &when).close("div").close("li");
+    }
+    html.close("ul");
+    html.open("p", &[]);
+    html.open("a", &[("href", logs)])
+        .text("All logs")
+        .close("a");
+    html.close("p");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::markup::rows::tests::device;
+    use crate::actuator::state::logs::tests::put;
+    use shared::icon3000::model::HEALTH;
+
+    fn drawn(dossier: &Dossier) -> String {
+        let mut html = Markup::new();
+        health(&mut html, dossier, "#/x");
+        html.finish()
+    }
+
+    #[test]
+    fn conditions_carry_reason_check_and_proof() {
+        let phase = HEALTH.iter().find(|m| m.key == "lost_phase").unwrap();
+        let mut dossier = device(&[(3010, &[1 << phase.value])]);
+        put(&mut dossier, 2, &[1, 0, 90, 12]);
+        let html = drawn(&dossier);
+        for part in [
+            "sign-f",
+            "data-key=\"lost_phase\"",
+            "data-status=\"F\"",
+            "Check: ",
+            "table 5",
+            "3010 bit",
+            "health-past",
+            "Not read, so not known",
+        ] {
+            assert!(html.contains(part), "{part}: {html}");
+        }
+    }
+
+    #[test]
+    fn good_needs_everything_read() {
+        assert!(drawn(&device(&[])).contains("Not known."));
+        let all = device(&[
+            (3001, &[0x20, 0, 0]),
+            (3009, &[0, 0, 0]),
+            (3016, &[0]),
+            (3030, &[0]),
+        ]);
+        let html = drawn(&all);
+        assert!(
+            html.contains("Good:") && !html.contains("health-unread"),
+            "{html}"
+        );
+    }
+}

@@ -1,0 +1,122 @@
+//! Error rates of the line, from counters that were read again and again.
+
+use shared::icon3000::counters::{rate, since};
+use shared::scale::Scale;
+
+use super::dossier::{Dossier, Reading};
+use crate::chart::{Axis, Chart, Kind, Point, Series, Shape, Stroke};
+
+/// Sub-function that counts all messages.
+const MESSAGES: u16 = 11;
+
+/// Errors whose rate is shown: their sub-function and name.
+const ERRORS: [(u16, &str, &str); 3] = [
+    (12, "crc", "CRC errors"),
+    (13, "exceptions", "Exceptions"),
+    (18, "overruns", "Overruns"),
+];
+
+/// Errors in percent of the messages between two readings, over time. `None` before two readings.
+#[must_use]
+pub fn chart(dossier: &Dossier) -> Option<Chart> {
+    let messages = dossier.counters.get(&MESSAGES)?;
+    if messages.len() < 2 {
+        return None;
+    }
+    let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted];
+    let series = ERRORS
+        .iter()
+        .zip(strokes)
+        .map(|((sub, key, label), stroke)| {
+            let errors = dossier.counters.get(sub).map_or(&[][..], Vec::as_slice);
+            Series {
+                key: (*key).to_owned(),
+                label: (*label).to_owned(),
+                shape: Shape::Step,
+                stroke,
+                points: points(dossier, messages, errors),
+            }
+        });
+    Some(Chart {
+        key: "rates".to_owned(),
+        title: "Errors of the line, in percent of its messages".to_owned(),
+        x: Axis {
+            label: "Time".to_owned(),
+            unit: "UTC".to_owned(),
+            kind: Kind::Time,
+        },
+        y: Axis::number("Errors", "%"),
+        series: series.collect(),
+        bands: Vec::new(),
+        notes: vec![
+            "Counters of FC 08; they go round at 65536 and begin at 0 with power up (reading E60)."
+                .to_owned(),
+        ],
+    })
+}
+
+/// Thousandths of a percent.
+const THOUSANDTH: Scale = Scale::new(1, 1000, 3);
+
+fn points(dossier: &Dossier, messages: &[Reading], errors: &[Reading]) -> Vec<Point> {
+    // Each round reads every counter once, so that the readings of one round have one place.
+    messages
+        .windows(2)
+        .zip(errors.windows(2))
+        .filter_map(|(messages, errors)| {
+            let ([m0, m1], [e0, e1]) = (messages, errors) else {
+                return None;
+            };
+            let errors = since(e0.count, e1.count);
+            let all = since(m0.count, m1.count);
+            let rate = rate(errors, all);
+            Some(Point {
+                from: seconds(dossier.wall(m0.at)),
+                to: seconds(dossier.wall(m1.at)),
+                y: rate.map(|r| THOUSANDTH.to_f64(r.into())),
+                text: rate.map_or_else(String::new, |r| THOUSANDTH.apply(r.into()).to_string()),
+                note: format!("{errors} of {all}"),
+            })
+        })
+        .collect()
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "seconds since 1970 are far below 2^52"
+)]
+const fn seconds(time: i64) -> f64 {
+    time as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::device::Device;
+
+    fn read(dossier: &mut Dossier, sub: u8, count: u16, at: u64) {
+        let [high, low] = count.to_be_bytes();
+        assert!(dossier.absorb(&[8, 0, sub, 0, 0], &[8, 0, sub, high, low], at));
+    }
+
+    /// 200 messages with one error are 0.5 %; then the counter goes round: 65530 to 94 are 100.
+    #[test]
+    fn rates_are_those_between_two_readings() {
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        read(&mut dossier, 11, 65_330, 0);
+        read(&mut dossier, 12, 4, 0);
+        assert_eq!(chart(&dossier), None);
+        read(&mut dossier, 11, 65_530, 5_000_000);
+        read(&mut dossier, 12, 5, 5_000_000);
+        read(&mut dossier, 11, 94, 10_000_000);
+        read(&mut dossier, 12, 5, 10_000_000);
+        let chart = chart(&dossier).unwrap();
+        let crc = &chart.series[0].points;
+        assert_eq!(crc.len(), 2);
+        assert_eq!((crc[0].y, crc[0].text.as_str()), (Some(0.5), "0.500"));
+        assert_eq!(crc[0].note, "1 of 200");
+        assert_eq!((crc[1].y, crc[1].note.as_str()), (Some(0.0), "0 of 100"));
+        assert_eq!((crc[0].from, crc[0].to, crc[1].to), (0.0, 5.0, 10.0));
+        assert!(chart.series[1].points.is_empty(), "not read, not zero");
+    }
+}

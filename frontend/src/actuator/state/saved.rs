@@ -1,0 +1,220 @@
+//! A device as a file, and back.
+
+use shared::address::{Address, Table};
+use shared::device::Device;
+use shared::icon3000::snapshot::{Failure as Had, FileProblem, Part, parse};
+use shared::icon3000::{Snapshot, Span};
+use shared::map::row::Model;
+use shared::proto::{Block, IconStep, Outcome};
+use shared::value::Rfc3339;
+
+use super::dossier::{Answer, Dossier, Reading, Record};
+use crate::chart::time::Civil;
+
+/// What a file says beside the device itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Opened {
+    /// What is wrong with it.
+    pub problems: Vec<String>,
+}
+
+/// The model of a device.
+#[must_use]
+pub fn model(device: Device) -> Option<Model> {
+    device.map().map(|map| map.model)
+}
+
+/// The device of a model.
+fn device(model: Model) -> Device {
+    let of = |device: &Device| device.map().is_some_and(|map| map.model == model);
+    Device::ALL.into_iter().find(of).unwrap_or_default()
+}
+
+/// A device as it is saved at a time, in seconds since 1970. `None` without a known kind.
+#[must_use]
+pub fn snapshot(dossier: &Dossier, now: i64) -> Option<Snapshot> {
+    let mut snapshot = Snapshot::new(model(dossier.device)?, dossier.unit, &dossier.tag);
+    snapshot.tool = concat!("valvescope ", env!("CARGO_PKG_VERSION"), ", page").to_owned();
+    snapshot.taken = Rfc3339(oldest(dossier).unwrap_or(now)).to_string();
+    for (table, address, cell) in dossier.image.iter() {
+        snapshot.image.set(
+            table,
+            address,
+            cell.word,
+            shared::capture::Micros::default(),
+        );
+    }
+    snapshot.identity = dossier.identity.as_ref().map(|a| a.pdu.clone());
+    let counters = dossier.counters.keys();
+    snapshot.counters = counters
+        .filter_map(|sub| Some((*sub, dossier.count(*sub)?.count)))
+        .collect();
+    snapshot.files = dossier.all_files();
+    for failure in dossier.failed.values() {
+        let part = match failure.step {
+            IconStep::Block(block) => Part::Block(
+                Table::from(block.table),
+                Address::new(block.start),
+                block.count,
+            ),
+            IconStep::File { file, start, count } => Part::File(Span::new(file, start, count)),
+            IconStep::Identity => Part::Identity,
+            IconStep::Diagnostic { sub_function } => Part::Counter(sub_function),
+        };
+        let why = failure.text.clone();
+        snapshot.failures.push(Had { part, why });
+    }
+    Some(snapshot)
+}
+
+/// When the oldest of what a device says was read, in seconds since 1970.
+fn oldest(dossier: &Dossier) -> Option<i64> {
+    let registers = dossier.image.iter().map(|(_, _, cell)| cell.at.get());
+    let records = dossier.files.values().flatten().flatten().map(|r| r.at);
+    let oldest = registers.chain(records).min()?;
+    Some(dossier.wall(oldest))
+}
+
+/// A saved device, under the name of its file.
+#[must_use]
+pub fn dossier(snapshot: &Snapshot, name: &str) -> Dossier {
+    let mut dossier = Dossier::new(&snapshot.tag, device(snapshot.model));
+    name.clone_into(&mut dossier.origin);
+    dossier.unit = snapshot.unit;
+    let taken = seconds(&snapshot.taken).and_then(|s| u64::try_from(s).ok());
+    dossier.start_wall_ms = taken.unwrap_or(0).saturating_mul(1000);
+    dossier.image = snapshot.image.clone();
+    dossier.identity = snapshot.identity.clone().map(|pdu| Answer { pdu, at: 0 });
+    for (&sub, &count) in &snapshot.counters {
+        dossier.counters.insert(sub, vec![Reading { count, at: 0 }]);
+    }
+    for (file, records) in snapshot.files.iter() {
+        let kept = dossier.files.entry(file).or_default();
+        for (record, word) in records.iter() {
+            let at = usize::from(record);
+            if kept.len() <= at {
+                kept.resize(at + 1, None);
+            }
+            if let Some(slot) = kept.get_mut(at) {
+                *slot = Some(Record { word, at: 0 });
+            }
+        }
+    }
+    for failure in &snapshot.failures {
+        let step = match failure.part {
+            Part::Block(table, start, count) => IconStep::Block(Block {
+                table: table.into(),
+                start: start.get(),
+                count,
+            }),
+            Part::File(span) => IconStep::File {
+                file: span.file,
+                start: span.start,
+                count: span.count,
+            },
+            Part::Identity => IconStep::Identity,
+            Part::Counter(sub_function) => IconStep::Diagnostic { sub_function },
+        };
+        // Files do not tell which of the ways it failed; the words do.
+        dossier.fail(step, Outcome::Exception, &failure.why, 0);
+    }
+    dossier
+}
+
+/// Opens a file: the device, and what is wrong with the file.
+///
+/// # Errors
+///
+/// Why it holds no device, in words.
+pub fn open(name: &str, text: &str) -> Result<(Dossier, Opened), String> {
+    let (snapshot, problems) = parse(text.as_bytes());
+    let words = |problems: &[FileProblem]| -> Vec<String> {
+        problems.iter().map(ToString::to_string).collect()
+    };
+    match snapshot {
+        Some(snapshot) => Ok((
+            dossier(&snapshot, name),
+            Opened {
+                problems: words(&problems),
+            },
+        )),
+        None => Err(format!(
+            "{name} is no snapshot: {}.",
+            words(&problems).join("; ")
+        )),
+    }
+}
+
+/// Seconds since 1970 of a time such as `2026-11-26T23:50:00Z`.
+fn seconds(text: &str) -> Option<i64> {
+    let number = |from: usize, to: usize| text.get(from..to)?.parse::<i64>().ok();
+    let civil = Civil {
+        year: number(0, 4)?,
+        month: number(5, 7)?,
+        day: number(8, 10)?,
+        second: number(11, 13)? * 3600 + number(14, 16)? * 60 + number(17, 19)?,
+    };
+    Some(civil.seconds())
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::actuator::markup::rows::tests::put as put_registers;
+    use crate::actuator::state::logs::tests::put;
+    use shared::icon3000::snapshot::diff;
+
+    /// A device with something of everything.
+    pub(crate) fn device() -> Dossier {
+        let mut dossier = Dossier::new("XV-101", Device::Icon3000v2);
+        dossier.unit = 7;
+        dossier.start_wall_ms = 1_765_000_000_000;
+        put_registers(&mut dossier, 3615, &[20, 150], 2_000_000);
+        put(&mut dossier, 2, &[1, 0x3000, 0, 12]);
+        let mut pdu = vec![0x11, 0x52, 0, 0];
+        pdu.extend([b' '; 82]);
+        assert!(dossier.absorb(&[0x11], &pdu, 3_000_000));
+        assert!(dossier.absorb(&[8, 0, 11, 0, 0], &[8, 0, 11, 0, 9], 3_000_000));
+        let file = IconStep::File {
+            file: 3500,
+            start: 0,
+            count: 110,
+        };
+        dossier.fail(file, Outcome::Exception, "illegal data address", 4);
+        dossier
+    }
+
+    #[test]
+    fn a_file_brings_everything_back() {
+        let before = device();
+        let saved = snapshot(&before, 0).unwrap();
+        let (after, opened) = open("xv.json", &saved.to_text()).unwrap();
+        assert_eq!(opened.problems, [""; 0]);
+        assert_eq!(
+            (after.tag.as_str(), after.device, after.unit),
+            ("XV-101", Device::Icon3000v2, 7)
+        );
+        assert_eq!(after.origin, "xv.json");
+        assert_eq!(after.count(11).map(|r| r.count), Some(9));
+        assert_eq!(after.records(2, 0), before.records(2, 0));
+        assert_eq!(after.failed.len(), 1);
+        assert_eq!(after.wall(0), 1_765_000_000, "as old as its oldest record");
+        let again = snapshot(&after, 0).unwrap();
+        assert!(diff(&saved, &again).is_empty());
+        assert_eq!(again.to_text(), saved.to_text());
+    }
+
+    #[test]
+    fn other_files_are_refused_in_words() {
+        for text in ["", "{}", "[1]", "{\"format\":\"other\"}"] {
+            let error = open("x.json", text).unwrap_err();
+            assert!(error.starts_with("x.json is no snapshot: "), "{error}");
+        }
+    }
+
+    #[test]
+    fn times_are_read() {
+        assert_eq!(seconds("2025-12-06T05:46:40Z"), Some(1_765_000_000));
+        assert_eq!(seconds("yesterday"), None);
+    }
+}
