@@ -1,11 +1,13 @@
-//! Turns `data/` into static tables: `OUT_DIR/maps.rs`, included by `map/mod.rs`, and
-//! `OUT_DIR/dop.rs`, included by `dop/mod.rs`, `OUT_DIR/hart.rs`, included by `hart/mod.rs`, and
-//! `OUT_DIR/icon3000.rs`, included by `icon3000/model.rs`.
+//! Turns `data/` into static tables: `OUT_DIR/maps.rs`, included by `map/mod.rs`, `OUT_DIR/dop.rs`,
+//! included by `dop/mod.rs`, `OUT_DIR/hart.rs`, included by `hart/mod.rs`, `OUT_DIR/icon3000.rs`,
+//! included by `icon3000/model.rs`, and `OUT_DIR/ddc100.rs`, included by `ddc100/tables.rs`.
 //!
 //! A map with a mistake must not build. All problems are printed, each with file, line and the
-//! number of its rule (see `build/rules.rs` and the `rules.rs` of the folders there), before the build
-//! stops.
+//! number of its rule (see `build/rules.rs`, `build/ddc100.rs` and the `rules.rs` of the folders
+//! there), before the build stops.
 
+#[path = "build/ddc100.rs"]
+mod ddc100;
 #[path = "build/dop/mod.rs"]
 mod dop;
 #[path = "build/emit.rs"]
@@ -48,10 +50,15 @@ fn main() -> ExitCode {
 
 /// Reads, checks and writes all maps. Nothing is written while there are problems.
 fn generate() -> io::Result<Vec<types::Problem>> {
-    let (data, mut problems) = read::all(Path::new("data"))?;
+    let (mut data, mut problems) = read::all(Path::new("data"))?;
+    let times = ddc100::read(Path::new("data"), &mut problems)?;
+    if let Some(device) = data.devices.iter_mut().find(|d| d.key == "ddc100") {
+        device.cited = times.cited();
+    }
     // Rules judge what was read; with unreadable cells they would only echo them.
     if problems.is_empty() {
         problems = rules::check(&data);
+        problems.extend(ddc100::check(&times));
     }
     let objects = dop::read(Path::new("data"), &mut problems)?;
     if problems.is_empty() {
@@ -74,6 +81,7 @@ fn generate() -> io::Result<Vec<types::Problem>> {
             Path::new(&out).join("dop.rs"),
             dop::emit(&objects, &data.docs),
         )?;
+        fs::write(Path::new(&out).join("ddc100.rs"), ddc100::emit(&times))?;
         fs::write(
             Path::new(&out).join("hart.rs"),
             hart::emit(&commands, &data.docs),

@@ -230,7 +230,11 @@ fn readings(device: &Device, found: &mut Findings) {
     let absent = device.models.iter().filter(|m| !m.reading.is_empty());
     let rows = device.rows.iter().map(|r| (&r.at, &r.reading));
     let functions = device.functions.iter().map(|f| (&f.at, &f.reading));
-    let cited = rows.chain(functions).filter(|(_, id)| !id.is_empty());
+    let others = device.cited.iter().map(|(at, id)| (at, id));
+    let cited = rows
+        .chain(functions)
+        .chain(others)
+        .filter(|(_, id)| !id.is_empty());
     for (at, id) in absent.map(|m| (&m.at, &m.reading)).chain(cited) {
         found.unless(
             known.contains(id.as_str()),

@@ -55,6 +55,8 @@ pub struct Device {
     pub rows: Vec<Row>,
     pub members: Vec<Member>,
     pub readings: Vec<Reading>,
+    /// Readings that other data of the folder name.
+    pub cited: Vec<(At, String)>,
 }
 
 impl Device {

@@ -16,9 +16,11 @@
 //! P8 of [`poller`] say what is done.
 
 pub mod diagnosis;
+pub mod estimate;
 pub mod faults;
 pub mod poller;
 pub mod setup;
+pub mod tables;
 #[cfg(all(test, feature = "sim"))]
 mod tests;
 pub mod timing;

@@ -18,7 +18,7 @@ use std::collections::VecDeque;
 
 use super::faults::FaultTable;
 use super::setup::{Member, Setup};
-use super::{HostPort, Pair, timing};
+use super::{HostPort, Pair, estimate};
 use crate::capture::Micros;
 use crate::proto::Outcome;
 
@@ -187,13 +187,7 @@ impl Poller {
     /// by table 4.1, and the turn time after it, which the last one does not have.
     #[must_use]
     pub fn expected_us(&self) -> u64 {
-        let wire = self.setup.line.exchange(&self.setup.read);
-        let registers = timing::items(&self.setup.read);
-        let each = self.setup.units.iter().map(|member| {
-            wire.saturating_add(timing::thinks(member.kind, registers))
-                .saturating_add(self.setup.turn_us)
-        });
-        each.sum::<u64>().saturating_sub(self.setup.turn_us)
+        estimate::pass(&self.setup)
     }
 
     /// Takes in that a port was lost or is back. What is under way on a lost port still has to be

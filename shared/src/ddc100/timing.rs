@@ -1,5 +1,6 @@
 //! How long exchanges take: on the wire, in the unit, and how long an answer is waited for.
 
+use super::tables::{RESPONSE_TIMES, ResponseTime};
 use crate::device::Device;
 use crate::encode::Read;
 use crate::frame::Framing;
@@ -58,8 +59,8 @@ impl Line {
     /// Both frames of a read, in microseconds, without any pause.
     #[must_use]
     pub fn exchange(self, read: &Read) -> u64 {
-        self.characters(self.frame(read.pdu().len()))
-            .saturating_add(self.answer(read))
+        let query = self.frame(read.pdu().len());
+        self.characters(query.saturating_add(self.frame(read.response_len())))
     }
 
     /// The frame of a good answer, in microseconds.
@@ -95,23 +96,24 @@ pub(super) fn items(read: &Read) -> u16 {
     }
 }
 
-/// Points of table 4.1 without the wire: registers, microseconds.
-const MX: [(u16, u64); 3] = [(1, 24_375), (5, 26_042), (10, 27_625)];
-const UEC: [(u16, u64); 3] = [(1, 55_375), (5, 85_042), (10, 127_625)];
-
 /// How long a unit needs between request and answer, in microseconds: table 4.1 without the time
-/// of the characters. Between its points and beyond them along the straight line. Types that the
-/// table does not name count as the slower one of the two.
+/// of the characters. Between its lines and beyond them along the straight line.
 #[must_use]
 pub fn thinks(kind: Device, registers: u16) -> u64 {
-    let [a, b, c] = match kind {
-        Device::Ddc100Mx | Device::Ddc100MxB => MX,
-        _ => UEC,
+    let [a, b, c] = &RESPONSE_TIMES;
+    let (from, to) = if registers <= b.registers {
+        (a, b)
+    } else {
+        (b, c)
     };
-    let (from, to) = if registers <= b.0 { (a, b) } else { (b, c) };
-    let along = u64::from(registers.saturating_sub(from.0));
-    let slope = to.1.saturating_sub(from.1);
-    let width = u64::from(to.0.saturating_sub(from.0));
-    from.1
-        .saturating_add(slope.saturating_mul(along).checked_div(width).unwrap_or(0))
+    let alone = |r: &ResponseTime| {
+        // A query has 8 characters, an answer 5 and two for each register.
+        let wire = u64::from(r.registers).saturating_mul(2).saturating_add(13);
+        r.of(kind).saturating_sub(Line::GUIDE.characters(wire))
+    };
+    let along = u64::from(registers.saturating_sub(from.registers));
+    let slope = alone(to).saturating_sub(alone(from));
+    let width = u64::from(to.registers.saturating_sub(from.registers));
+    let more = slope.saturating_mul(along).checked_div(width).unwrap_or(0);
+    alone(from).saturating_add(more)
 }
