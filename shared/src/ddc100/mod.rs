@@ -15,15 +15,21 @@
 //! Source: FCD LMAIM4019-00 (9/04), sections 4.3 and 6. Where the guide is silent, the rules P1 to
 //! P8 of [`poller`] say what is done.
 
+pub mod checklist;
+pub mod counters;
 pub mod diagnosis;
 pub mod estimate;
 pub mod faults;
 pub mod poller;
+pub mod scaling;
 pub mod setup;
 pub mod tables;
+pub mod tags;
 #[cfg(all(test, feature = "sim"))]
 mod tests;
 pub mod timing;
+pub mod view;
+pub mod words;
 
 use core::fmt;
 

@@ -1,6 +1,8 @@
 //! The examples of section 4.3.2 by simulator and poller together.
 
 use super::HostPort;
+mod soak;
+
 use super::diagnosis::{Finding, diagnose};
 use super::poller::{Next, Pass, Poller};
 use super::setup::{Member, Setup};

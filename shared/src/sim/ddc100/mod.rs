@@ -58,22 +58,33 @@ impl Loop {
 
     /// Lets time go on. A time before the last one changes nothing.
     pub fn advance(&mut self, now: Micros) {
-        let passed = now.since(self.now);
         self.now = self.now.max(now);
         for unit in &mut self.units {
-            unit.advance(self.now, passed);
+            unit.advance(self.now);
         }
+    }
+
+    /// True if a unit takes in what reaches it: it has power and its own address, and is in no
+    /// reset.
+    #[must_use]
+    pub fn listens(&self, unit: u8) -> bool {
+        let mut all = self.units.iter();
+        all.any(|it| it.address() == unit && it.hears())
     }
 
     /// A request at a host port; `now` is the end of its last character. `None` if nobody answers:
     /// the unit is not there, not reached, without power or resetting, or the request was for all
     /// (unit 0), which every unit that it reaches carries out.
     pub fn request(&mut self, port: HostPort, unit: u8, pdu: &[u8], now: Micros) -> Option<Answer> {
-        self.advance(now);
+        self.now = self.now.max(now);
         let mut answer = None;
         for (place, it) in self.units.iter_mut().enumerate() {
             let meant = unit == 0 || unit == it.address();
-            if !meant || !self.cable.reaches(port, place) || !it.hears() {
+            if !meant {
+                continue;
+            }
+            it.advance(self.now);
+            if !self.cable.reaches(port, place) || !it.hears() {
                 continue;
             }
             let said = it.request(port, pdu, now);
@@ -116,8 +127,13 @@ impl Loop {
                 true
             }
             Trouble::Unit(unit, what) => {
+                let now = self.now;
                 let it = self.units.iter_mut().find(|u| u.address() == unit);
-                it.map(|it| it.set(what, on)).is_some()
+                it.map(|it| {
+                    it.advance(now);
+                    it.set(what, on);
+                })
+                .is_some()
             }
         }
     }

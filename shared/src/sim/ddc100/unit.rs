@@ -188,8 +188,9 @@ impl Unit {
         SECOND.saturating_mul(extra.saturating_add(10))
     }
 
-    pub(super) fn advance(&mut self, now: Micros, passed: u64) {
-        self.now = now;
+    pub(super) fn advance(&mut self, now: Micros) {
+        let passed = now.since(self.now);
+        self.now = self.now.max(now);
         if self.wrong.off {
             return;
         }

@@ -1,0 +1,378 @@
+//! Days of simulated polling with random troubles: a certain finding is never wrong, an ambiguous
+//! one names what happened, and whatever lasts is found.
+//!
+//! The truth comes from what was injected, not from the diagnosis' own picture of the cable.
+
+use super::{Bench, status_read};
+use crate::capture::Micros;
+use crate::ddc100::HostPort;
+use crate::ddc100::diagnosis::{Diagnosis, End, Finding, diagnose};
+use crate::ddc100::setup::{Member, Setup};
+use crate::device::Device;
+use crate::proto::DdcShape;
+use crate::sim::ddc100::{Trouble, UnitTrouble};
+
+const MINUTE: u64 = 60_000_000;
+
+/// Numbers that look random and are the same each time.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, below: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % below
+    }
+}
+
+/// What was wrong with the cable from some time on.
+#[derive(Clone)]
+struct Truth {
+    from: Micros,
+    troubles: Vec<Trouble>,
+}
+
+impl Truth {
+    /// True if the cable is cut at this place, or at an end the port behind it is dead.
+    fn is_cut(&self, place: usize, units: usize) -> bool {
+        self.troubles.iter().any(|t| match *t {
+            Trouble::Break(at) | Trouble::Short(at) => at == place,
+            Trouble::Port(HostPort::One) => place == 0,
+            Trouble::Port(HostPort::Two) => place == units,
+            Trouble::Unit(..) => false,
+        })
+    }
+}
+
+struct Soak {
+    bench: Bench,
+    shape: DdcShape,
+    units: usize,
+    dice: Dice,
+    history: Vec<Truth>,
+    /// For each unit when a poll last found it deaf, and when it last found it listening.
+    deaf: Vec<Option<Micros>>,
+    heard: Vec<Option<Micros>>,
+    passes: Vec<Micros>,
+    count: Count,
+}
+
+#[derive(Debug, Default)]
+struct Count {
+    polls: u64,
+    troubles: u64,
+    judged: u64,
+    certain: u64,
+    ambiguous: u64,
+    preliminary: u64,
+}
+
+/// Passes that a diagnosis may look back at: two on each port to see a change, and two to bear it
+/// out.
+const WINDOW: usize = 5;
+
+impl Soak {
+    fn new(shape: DdcShape, units: u8, seed: u64) -> Self {
+        let kinds = [
+            Device::Ddc100Mx,
+            Device::Ddc100Uec,
+            Device::Ddc100Clamshell,
+            Device::Ddc100Io,
+        ];
+        let members = (1..=units).map(|unit| Member {
+            unit,
+            kind: kinds[usize::from(unit) % 4],
+        });
+        let second = shape == DdcShape::Loop;
+        let mut setup = Setup::new(shape, second, members.collect(), status_read());
+        setup.retries = 1;
+        let units = usize::from(units);
+        Self {
+            bench: Bench::new(setup),
+            shape,
+            units,
+            dice: Dice(seed),
+            history: vec![Truth {
+                from: Micros::new(0),
+                troubles: vec![],
+            }],
+            deaf: vec![None; units],
+            heard: vec![None; units],
+            passes: vec![Micros::new(0)],
+            count: Count::default(),
+        }
+    }
+
+    /// Something breaks or is mended.
+    fn event(&mut self) {
+        let now = self.bench.now;
+        let there = self.bench.network.troubles().to_vec();
+        let heal = there.len() >= 4 || (!there.is_empty() && self.dice.roll(2) == 0);
+        if heal {
+            let which = self.dice.roll(there.len() as u64) as usize;
+            assert!(self.bench.network.heal(there[which]));
+        } else {
+            let place = self.dice.roll(self.units as u64 + 1) as usize;
+            let unit = self.dice.roll(self.units as u64) as u8 + 1;
+            let trouble = match self.dice.roll(8) {
+                0 | 1 => Trouble::Break(place),
+                2 => Trouble::Short(place),
+                3 => Trouble::Port(HostPort::One),
+                4 => Trouble::Port(HostPort::Two),
+                5 => Trouble::Unit(unit, UnitTrouble::Deaf),
+                _ => Trouble::Unit(unit, UnitTrouble::Off),
+            };
+            self.count.troubles += u64::from(self.bench.network.inject(trouble));
+        }
+        self.history.push(Truth {
+            from: now,
+            troubles: self.bench.network.troubles().to_vec(),
+        });
+    }
+
+    /// Polls for so long.
+    fn run(&mut self, hours: u64) {
+        let end = self.bench.now.plus(hours * 60 * MINUTE);
+        let mut next = self.bench.now.plus(10 * MINUTE);
+        while self.bench.now < end {
+            if self.bench.now >= next {
+                self.event();
+                // Mostly minutes, now and then seconds: faults that come and go while a pass runs.
+                let wait = match self.dice.roll(4) {
+                    0 => self.dice.roll(MINUTE),
+                    _ => self.dice.roll(40 * MINUTE),
+                };
+                next = self.bench.now.plus(wait);
+            }
+            let before = self.bench.log.len();
+            let pass = self.bench.step();
+            if self.bench.log.len() > before {
+                let (unit, _, _) = self.bench.log[before];
+                self.count.polls += 1;
+                let at = usize::from(unit) - 1;
+                let listens = self.bench.network.listens(unit);
+                let seen = if listens {
+                    &mut self.heard
+                } else {
+                    &mut self.deaf
+                };
+                seen[at] = Some(self.bench.now);
+                if self.bench.log.len() > 10_000 {
+                    self.bench.log.clear();
+                }
+            }
+            if pass.is_some() {
+                self.passes.push(self.bench.now);
+            }
+            if pass.is_some() || self.dice.roll(50) == 0 {
+                self.judge();
+            }
+        }
+    }
+
+    fn judge(&mut self) {
+        let found = diagnose(self.shape, self.bench.poller.faults());
+        self.count.judged += 1;
+        let window = self.passes[self.passes.len().saturating_sub(WINDOW + 1)];
+        let states: Vec<&Truth> = self
+            .history
+            .iter()
+            .enumerate()
+            .filter(|(at, _)| self.history.get(at + 1).is_none_or(|n| n.from > window))
+            .map(|(_, t)| t)
+            .collect();
+        if found.unsettled > 0 {
+            self.count.preliminary += 1;
+        } else {
+            for finding in &found.findings {
+                let right = self.is_right(finding, &states, window);
+                if found.is_certain(finding) {
+                    self.count.certain += 1;
+                } else {
+                    self.count.ambiguous += 1;
+                }
+                assert!(
+                    right,
+                    "{finding:?} at {}, since {window}: {:?}",
+                    self.bench.now,
+                    states
+                        .iter()
+                        .map(|s| (s.from, &s.troubles))
+                        .collect::<Vec<_>>()
+                );
+            }
+        }
+        let lasts = states.len() == 1 && self.passes.len() > WINDOW;
+        if lasts {
+            self.is_complete(&found, states[0], window);
+        }
+    }
+
+    fn was_deaf(&self, place: usize, window: Micros) -> bool {
+        self.deaf[place].is_some_and(|at| at >= window)
+    }
+
+    fn place(&self, end: End) -> usize {
+        match end {
+            End::Port(HostPort::One) => 0,
+            End::Port(HostPort::Two) => self.units + 1,
+            End::Unit { place, .. } => place + 1,
+        }
+    }
+
+    /// True if what a finding says was so at some time in the window.
+    fn is_right(&self, finding: &Finding, states: &[&Truth], window: Micros) -> bool {
+        let cut = |from: usize, to: usize| {
+            let any = |s: &&&Truth| (from..to).any(|p| s.is_cut(p, self.units));
+            states.iter().find(any).is_some()
+        };
+        let between = |from: End, to: End| cut(self.place(from), self.place(to));
+        match finding {
+            Finding::NoFault => states.iter().any(|s| {
+                (0..=self.units).all(|p| !s.is_cut(p, self.units)) || self.shape != DdcShape::Loop
+            }),
+            Finding::OffLine(End::Unit { place, .. }) => self.was_deaf(*place, window),
+            Finding::Break { from, to } => between(*from, *to),
+            Finding::PortLost { port, .. } => match port {
+                HostPort::One => cut(0, 1),
+                HostPort::Two => cut(self.units, self.units + 1),
+            },
+            Finding::BreakAmong { from, to, .. } => between(*from, *to),
+            // Each silent unit is deaf, or cut off.
+            Finding::Beyond { from, silent, .. } => silent.iter().all(|unit| {
+                let place = usize::from(*unit) - 1;
+                self.was_deaf(place, window) || cut(self.place(*from), place + 1)
+            }),
+            Finding::LastUnit {
+                from,
+                unit: End::Unit { place, .. },
+            } => {
+                self.was_deaf(*place, window)
+                    || between(
+                        *from,
+                        End::Unit {
+                            place: *place,
+                            unit: 0,
+                        },
+                    )
+            }
+            Finding::Nothing { .. } => (0..self.units).all(|place| {
+                let here = |s: &&&Truth| {
+                    let near = (0..=place).any(|p| s.is_cut(p, self.units));
+                    let far = (place + 1..=self.units).any(|p| s.is_cut(p, self.units));
+                    near && (far || self.shape != DdcShape::Loop)
+                };
+                self.was_deaf(place, window) || states.iter().any(|s| here(&s))
+            }),
+            // It only says that the picture does not fit: something changed, or a unit came and
+            // went.
+            Finding::OneSided {
+                unit: End::Unit { place, .. },
+                ..
+            } => states.len() > 1 || self.was_deaf(*place, window),
+            _ => false,
+        }
+    }
+
+    /// What lasted for the whole window is in the findings.
+    fn is_complete(&self, found: &Diagnosis, truth: &Truth, window: Micros) {
+        let stretches: Vec<(usize, usize)> = found
+            .findings
+            .iter()
+            .filter_map(|f| {
+                let (from, to) = f.stretch()?;
+                // A break may hide behind units without power.
+                let to = match f {
+                    Finding::Beyond { .. } => End::Port(HostPort::Two),
+                    _ => to,
+                };
+                Some((self.place(from), self.place(to)))
+            })
+            .collect();
+        let nothing = found
+            .findings
+            .iter()
+            .any(|f| matches!(f, Finding::Nothing { .. }));
+        let places = if self.shape == DdcShape::Loop {
+            self.units + 1
+        } else {
+            self.units
+        };
+        let cuts: Vec<usize> = (0..places)
+            .filter(|p| truth.is_cut(*p, self.units))
+            .collect();
+        for cut in &cuts {
+            // One port sees the first cut only; two see the first and the last.
+            let hidden = match self.shape {
+                DdcShape::Loop => cuts.first() != Some(cut) && cuts.last() != Some(cut),
+                _ => cuts.first() != Some(cut),
+            };
+            let inside = stretches.iter().any(|(from, to)| (from..to).contains(&cut));
+            assert!(
+                hidden || inside || nothing,
+                "cut {cut} is missing in {found:?}"
+            );
+        }
+        // A unit that was deaf all the time, and none that was not.
+        for place in 0..self.units {
+            let was_deaf = self.was_deaf(place, window);
+            let was_heard = self.heard[place].is_some_and(|at| at >= window);
+            let named = found.findings.iter().any(|f| match f {
+                Finding::OffLine(End::Unit { place: at, .. })
+                | Finding::LastUnit {
+                    unit: End::Unit { place: at, .. },
+                    ..
+                } => *at == place,
+                Finding::BreakAmong { silent, .. } | Finding::Beyond { silent, .. } => {
+                    silent.contains(&(place as u8 + 1))
+                }
+                Finding::Nothing { .. } => true,
+                _ => false,
+            });
+            if was_deaf && !was_heard {
+                assert!(named, "unit {} is missing in {found:?}", place + 1);
+            }
+        }
+        if cuts.is_empty() && truth.troubles.is_empty() && found.unsettled == 0 {
+            let calm = (0..self.units).all(|p| !self.was_deaf(p, window));
+            assert!(!calm || found.findings == [Finding::NoFault], "{found:?}");
+        }
+    }
+}
+
+fn soak(shape: DdcShape, units: u8, hours: u64, seed: u64) {
+    let mut soak = Soak::new(shape, units, seed);
+    soak.run(hours);
+    println!(
+        "{shape:?}, {units} units, {hours} h, seed {seed}: {:?}",
+        soak.count
+    );
+    assert!(soak.count.certain > 0 && soak.count.troubles > 0);
+}
+
+/// Set `DDC100_SOAK_HOURS=24` (and `--nocapture`) for the whole run with 250 units.
+#[test]
+fn the_diagnosis_is_right_or_says_that_it_can_not_tell() {
+    let hours = std::env::var("DDC100_SOAK_HOURS").ok();
+    let hours: Option<u64> = hours.and_then(|h| h.parse().ok());
+    match hours {
+        Some(hours) => {
+            for seed in 1..=3 {
+                soak(DdcShape::Loop, 250, hours, seed);
+                soak(DdcShape::SingleEnded, 250, hours, seed);
+                soak(DdcShape::MultiDrop, 28, hours, seed);
+            }
+        }
+        None => {
+            for seed in 1..=8 {
+                soak(DdcShape::Loop, 6, 4, seed);
+                soak(DdcShape::SingleEnded, 6, 2, seed);
+            }
+            soak(DdcShape::Loop, 1, 2, 1);
+            soak(DdcShape::Loop, 2, 4, 1);
+            soak(DdcShape::Loop, 250, 1, 1);
+            soak(DdcShape::MultiDrop, 5, 2, 1);
+        }
+    }
+}
