@@ -12,6 +12,8 @@
 
 #[cfg(all(feature = "browser", not(target_arch = "wasm32")))]
 pub mod browser;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod ddc100;
 pub mod dop;
 pub mod golden;
 pub mod load;

@@ -37,6 +37,17 @@ pub enum End {
     },
 }
 
+impl End {
+    /// Its place along the cable: that of a unit from 1, 0 for host port 1.
+    const fn rank(self) -> usize {
+        match self {
+            Self::Port(HostPort::One) => 0,
+            Self::Port(HostPort::Two) => usize::MAX,
+            Self::Unit { place, .. } => place.saturating_add(1),
+        }
+    }
+}
+
 impl fmt::Display for End {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -181,23 +192,25 @@ impl Finding {
         )
     }
 
-    /// Where the cable is or may be broken: the ends of the stretch.
+    /// Where the cable is or may be broken: the ends of the stretch, the one towards host port 1
+    /// first.
     #[must_use]
-    pub const fn stretch(&self) -> Option<(End, End)> {
-        match self {
+    pub fn stretch(&self) -> Option<(End, End)> {
+        let (one, two) = match self {
             Self::Break { from, to }
             | Self::BreakAmong { from, to, .. }
-            | Self::Beyond { from, to, .. } => Some((*from, *to)),
-            Self::LastUnit { from, unit } => Some((*from, *unit)),
-            Self::PortLost {
-                port: HostPort::One,
-                next,
-            } => Some((End::Port(HostPort::One), *next)),
-            Self::PortLost {
-                port: HostPort::Two,
-                next,
-            } => Some((*next, End::Port(HostPort::Two))),
-            _ => None,
-        }
+            | Self::Beyond { from, to, .. } => (*from, *to),
+            Self::LastUnit { from, unit } => (*from, *unit),
+            Self::PortLost { port, next } => (End::Port(*port), *next),
+            _ => return None,
+        };
+        Some(if one.rank() <= two.rank() {
+            (one, two)
+        } else {
+            (two, one)
+        })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,7 @@
 //! and [`FaultTable::overwritten`] shows the word as they would have it.
 
 use super::{HostPort, Pair};
+use crate::proto::{DdcNews, LineState};
 
 /// Bit 10 of register 9: channel A fault.
 pub const CHANNEL_A: u16 = 1 << 10;
@@ -68,7 +69,7 @@ impl FaultTable {
     }
 
     /// Takes in that the host lost one of its ports, or has it back. Without the port no unit can
-    /// be reached through it; with the port back each has to be tried anew.
+    /// be reached through it; with the port back nothing is known until each was tried anew.
     pub fn set_port(&mut self, port: HostPort, up: bool) {
         if self.up.get(port) == up || (port == HostPort::Two && !self.second) {
             return;
@@ -78,10 +79,41 @@ impl FaultTable {
         self.changed = self.seen;
         for (_, cells) in &mut self.units {
             let cell = Cell {
-                fault: Some(true),
+                fault: (!up).then_some(true),
                 seen: 0,
             };
             cells.set(port, cell);
+        }
+    }
+
+    /// Takes in what the backend tells of a network: how a poll ended, and the state of a port. With
+    /// the table made of the same units, the page has the same table as the host.
+    pub fn apply(&mut self, news: &DdcNews) {
+        match news {
+            DdcNews::Unit {
+                unit,
+                port,
+                fault_a,
+                fault_b,
+                ..
+            } => {
+                for (of, fault) in HostPort::BOTH.into_iter().zip([fault_a, fault_b]) {
+                    // The port that was used was looked at; the other one counts if it is news.
+                    let looked = of.number() == *port && self.is_up(of);
+                    let news = *fault != self.fault(*unit, of) && self.is_up(of);
+                    if let Some(failed) = fault
+                        && (looked || news)
+                    {
+                        self.note(*unit, of, *failed);
+                    }
+                }
+            }
+            DdcNews::Port { port, state, .. } => {
+                if let Some(port) = HostPort::from_number(*port) {
+                    self.set_port(port, *state == LineState::Up);
+                }
+            }
+            _ => {}
         }
     }
 

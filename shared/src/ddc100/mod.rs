@@ -25,8 +25,6 @@ pub mod scaling;
 pub mod setup;
 pub mod tables;
 pub mod tags;
-#[cfg(all(test, feature = "sim"))]
-mod tests;
 pub mod timing;
 pub mod view;
 pub mod words;

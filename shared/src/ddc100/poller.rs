@@ -369,3 +369,6 @@ impl Poller {
         Some(pass)
     }
 }
+
+#[cfg(test)]
+mod tests;

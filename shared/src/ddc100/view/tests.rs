@@ -13,7 +13,17 @@ fn labels(bits: &[Bit]) -> Vec<&'static str> {
     bits.iter().map(|b| b.member.label).collect()
 }
 
-/// The example of section 3.2.3: registers 8 to 10 are 003D, 0808?: position 61 %, reading D5.
+/// The example of section 3.2.3 (reading D5): registers 8 to 10 are 003D, 0844 and 0000.
+#[test]
+fn the_example_of_the_guide() {
+    let seen = view(UEC, &[(8, 0x003D), (9, 0x0844), (10, 0)]);
+    assert_eq!(seen.state, "Stopped between the ends");
+    assert_eq!(seen.mode, Mode::LocalOrStop);
+    assert_eq!(seen.position.unwrap().to_string(), "61 %");
+    assert_eq!((seen.own.one, seen.own.two), (Own::Good, Own::NotFitted));
+    assert_eq!(labels(&seen.faults), [] as [&str; 0]);
+}
+
 #[test]
 fn a_unit_in_words() {
     let seen = view(UEC, &[(8, 61), (9, 0x0808), (12, 0x0801)]);

@@ -305,6 +305,7 @@ impl Unit {
             Device::Ddc100Mx | Device::Ddc100MxB => relay.saturating_add(2),
             // The first works K2, coil 7; the second K1, coil 8 (reading D3).
             Device::Ddc100Io if relay <= 2 => relay.saturating_add(6),
+            Device::Ddc100Io if relay > 6 => return Err(ILLEGAL_VALUE),
             _ => relay,
         };
         if coil < 3 || !self.has_coil(coil) {

@@ -13,6 +13,8 @@
 mod answer;
 mod cable;
 mod drive;
+#[cfg(test)]
+mod tests;
 mod trouble;
 mod unit;
 

@@ -3,14 +3,13 @@
 //!
 //! The truth comes from what was injected, not from the diagnosis' own picture of the cable.
 
-use super::{Bench, status_read};
-use crate::capture::Micros;
-use crate::ddc100::HostPort;
-use crate::ddc100::diagnosis::{Diagnosis, End, Finding, diagnose};
-use crate::ddc100::setup::{Member, Setup};
-use crate::device::Device;
-use crate::proto::DdcShape;
-use crate::sim::ddc100::{Trouble, UnitTrouble};
+use shared::capture::Micros;
+use shared::ddc100::setup::Member;
+use shared::ddc100::{Diagnosis, End, Finding, HostPort, Setup, diagnose};
+use shared::device::Device;
+use shared::proto::DdcShape;
+use shared::sim::ddc100::{Trouble, UnitTrouble};
+use tests::ddc100::{Bench, registers};
 
 const MINUTE: u64 = 60_000_000;
 
@@ -85,7 +84,7 @@ impl Soak {
             kind: kinds[usize::from(unit) % 4],
         });
         let second = shape == DdcShape::Loop;
-        let mut setup = Setup::new(shape, second, members.collect(), status_read());
+        let mut setup = Setup::new(shape, second, members.collect(), registers(8, 9));
         setup.retries = 1;
         let units = usize::from(units);
         Self {
