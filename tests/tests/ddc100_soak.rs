@@ -30,12 +30,15 @@ impl Dice {
 struct Truth {
     from: Micros,
     troubles: Vec<Trouble>,
+    /// A short anywhere silences all (section 4.2.3).
+    multi_drop: bool,
 }
 
 impl Truth {
     /// True if the cable is cut at this place, or at an end the port behind it is dead.
     fn is_cut(&self, place: usize, units: usize) -> bool {
         self.troubles.iter().any(|t| match *t {
+            Trouble::Short(_) if self.multi_drop => place == 0,
             Trouble::Break(at) | Trouble::Short(at) => at == place,
             Trouble::Port(HostPort::One) => place == 0,
             Trouble::Port(HostPort::Two) => place == units,
@@ -95,6 +98,7 @@ impl Soak {
             history: vec![Truth {
                 from: Micros::new(0),
                 troubles: vec![],
+                multi_drop: shape == DdcShape::MultiDrop,
             }],
             deaf: vec![None; units],
             heard: vec![None; units],
@@ -127,6 +131,7 @@ impl Soak {
         self.history.push(Truth {
             from: now,
             troubles: self.bench.network.troubles().to_vec(),
+            multi_drop: self.shape == DdcShape::MultiDrop,
         });
     }
 
@@ -264,6 +269,7 @@ impl Soak {
                 };
                 self.was_deaf(place, window) || states.iter().any(|s| here(&s))
             }),
+            Finding::Unsteady(_) => self.history.len() > 1,
             // It only says that the picture does not fit: something changed, or a unit came and
             // went.
             Finding::OneSided {
@@ -292,7 +298,7 @@ impl Soak {
         let nothing = found
             .findings
             .iter()
-            .any(|f| matches!(f, Finding::Nothing { .. }));
+            .any(|f| matches!(f, Finding::Nothing { .. } | Finding::Unsteady(_)));
         let places = if self.shape == DdcShape::Loop {
             self.units + 1
         } else {
@@ -319,6 +325,7 @@ impl Soak {
             let was_heard = self.heard[place].is_some_and(|at| at >= window);
             let named = found.findings.iter().any(|f| match f {
                 Finding::OffLine(End::Unit { place: at, .. })
+                | Finding::Unsteady(End::Unit { place: at, .. })
                 | Finding::LastUnit {
                     unit: End::Unit { place: at, .. },
                     ..

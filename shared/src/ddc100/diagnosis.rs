@@ -12,7 +12,9 @@
 //!   told apart, and the finding says so.
 //!
 //! **Invariant:** a finding that is not [ambiguous](Finding::is_ambiguous) follows from the pattern;
-//! it is wrong only if the pattern is old. [`Diagnosis::unsettled`] says whether it may be.
+//! it is wrong only if the pattern is old. [`Diagnosis::unsettled`] says whether it may be. What
+//! changes twice within two passes on each port may escape that, as it may escape every master that
+//! asks one unit after the other.
 
 mod pattern;
 mod words;
@@ -119,6 +121,8 @@ pub enum Finding {
         /// The port, if the host has or uses just one.
         port: Option<HostPort>,
     },
+    /// The unit comes and goes, and is left out of the rest. Ambiguous.
+    Unsteady(End),
     /// The unit answers through one port only, although units beyond it answer through the other:
     /// no state of the cable explains it. Ambiguous.
     OneSided {
@@ -174,6 +178,7 @@ impl Finding {
             Self::Beyond { .. } => "beyond",
             Self::LastUnit { .. } => "last_unit",
             Self::Nothing { .. } => "nothing",
+            Self::Unsteady(_) => "unsteady",
             Self::OneSided { .. } => "one_sided",
         }
     }
@@ -187,6 +192,7 @@ impl Finding {
                 | Self::Beyond { .. }
                 | Self::LastUnit { .. }
                 | Self::Nothing { .. }
+                | Self::Unsteady(_)
                 | Self::OneSided { .. }
                 | Self::Untried(_)
         )

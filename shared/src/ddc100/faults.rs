@@ -21,17 +21,34 @@ struct Cell {
     seen: u64,
 }
 
+/// Changes of a unit that make it an unsteady one, within [`UNSTEADY_PASSES`]: a unit that goes off
+/// and comes back makes four on two ports.
+const UNSTEADY_CHANGES: usize = 6;
+/// How far back changes count, in passes over all units on all ports.
+const UNSTEADY_PASSES: u64 = 16;
+
+/// A unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Line {
+    unit: u8,
+    cells: Pair<Cell>,
+    /// The observation that changed it last.
+    changed: u64,
+    /// Those that turned good to bad or back, the last ones only.
+    turns: [u64; UNSTEADY_CHANGES],
+}
+
 /// Faults of all units on both ports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaultTable {
     second: bool,
     up: Pair<bool>,
     /// In the order of the cable.
-    units: Vec<(u8, Pair<Cell>)>,
+    units: Vec<Line>,
     /// Observations so far.
     seen: u64,
-    /// The last observation that changed something.
-    changed: u64,
+    /// When a port was lost or came back last.
+    ports_changed: u64,
 }
 
 impl FaultTable {
@@ -42,9 +59,17 @@ impl FaultTable {
         Self {
             second,
             up: Pair::both(true),
-            units: units.into_iter().map(|u| (u, Pair::default())).collect(),
+            units: units
+                .into_iter()
+                .map(|unit| Line {
+                    unit,
+                    cells: Pair::default(),
+                    changed: 0,
+                    turns: [0; UNSTEADY_CHANGES],
+                })
+                .collect(),
             seen: 0,
-            changed: 0,
+            ports_changed: 0,
         }
     }
 
@@ -55,17 +80,24 @@ impl FaultTable {
             return;
         }
         self.seen = self.seen.saturating_add(1);
-        let Some((_, cells)) = self.units.iter_mut().find(|(u, _)| *u == unit) else {
+        let Some(line) = self.units.iter_mut().find(|l| l.unit == unit) else {
             return;
         };
-        if cells.get(port).fault != Some(failed) {
-            self.changed = self.seen;
+        let before = line.cells.get(port).fault;
+        if before != Some(failed) {
+            line.changed = self.seen;
+        }
+        if before == Some(!failed) {
+            line.turns.rotate_left(1);
+            if let Some(last) = line.turns.last_mut() {
+                *last = self.seen;
+            }
         }
         let cell = Cell {
             fault: Some(failed),
             seen: self.seen,
         };
-        cells.set(port, cell);
+        line.cells.set(port, cell);
     }
 
     /// Takes in that the host lost one of its ports, or has it back. Without the port no unit can
@@ -76,13 +108,13 @@ impl FaultTable {
         }
         self.up.set(port, up);
         self.seen = self.seen.saturating_add(1);
-        self.changed = self.seen;
-        for (_, cells) in &mut self.units {
+        self.ports_changed = self.seen;
+        for line in &mut self.units {
             let cell = Cell {
                 fault: (!up).then_some(true),
                 seen: 0,
             };
-            cells.set(port, cell);
+            line.cells.set(port, cell);
         }
     }
 
@@ -132,18 +164,18 @@ impl FaultTable {
     /// Fault of a unit on a port; `None` if it was not tried yet or does not exist.
     #[must_use]
     pub fn fault(&self, unit: u8, port: HostPort) -> Option<bool> {
-        let (_, cells) = self.units.iter().find(|(u, _)| *u == unit)?;
-        cells.get(port).fault
+        let line = self.units.iter().find(|l| l.unit == unit)?;
+        line.cells.get(port).fault
     }
 
     /// All units in the order of the cable with their faults.
     pub fn units(&self) -> impl DoubleEndedIterator<Item = (u8, Pair<Option<bool>>)> + '_ {
-        self.units.iter().map(|(unit, cells)| {
+        self.units.iter().map(|line| {
             let faults = Pair {
-                one: cells.one.fault,
-                two: cells.two.fault,
+                one: line.cells.one.fault,
+                two: line.cells.two.fault,
             };
-            (*unit, faults)
+            (line.unit, faults)
         })
     }
 
@@ -159,21 +191,42 @@ impl FaultTable {
         self.units.is_empty()
     }
 
+    /// True for a unit that comes and goes: its faults turned six times and more within sixteen
+    /// passes on all ports. The diagnosis leaves it out, so that it does not keep the rest in doubt.
+    #[must_use]
+    pub fn is_unsteady(&self, unit: u8) -> bool {
+        let mut all = self.units.iter();
+        all.find(|l| l.unit == unit)
+            .is_some_and(|l| self.turns_often(l))
+    }
+
+    fn turns_often(&self, line: &Line) -> bool {
+        let ports = if self.second { 2 } else { 1 };
+        let units = u64::try_from(self.units.len()).unwrap_or(u64::MAX);
+        let window = units.saturating_mul(ports).saturating_mul(UNSTEADY_PASSES);
+        let first = line.turns.first().copied().unwrap_or(0);
+        first > 0 && self.seen.saturating_sub(first) <= window
+    }
+
     /// How many pairs of unit and port must still be tried before the table can be relied on: those
     /// that were not looked at again since the last change. A pattern seen half before and half
-    /// after a change may look like another fault; only 0 rules that out.
+    /// after a change may look like another fault; only 0 rules that out. Unsteady units don't
+    /// count.
     #[must_use]
     pub fn unsettled(&self) -> usize {
+        let steady = || self.units.iter().filter(|l| !self.turns_often(l));
+        let changed = steady().map(|l| l.changed).max().unwrap_or(0);
+        let changed = changed.max(self.ports_changed);
         let ports = HostPort::BOTH
             .into_iter()
             .filter(|p| self.has(*p) && self.is_up(*p));
         ports
             .map(|port| {
-                let old = |(_, cells): &&(u8, Pair<Cell>)| {
-                    let cell = cells.get(port);
-                    cell.fault.is_none() || cell.seen < self.changed
+                let old = |line: &&Line| {
+                    let cell = line.cells.get(port);
+                    cell.fault.is_none() || cell.seen < changed
                 };
-                self.units.iter().filter(old).count()
+                steady().filter(old).count()
             })
             .sum()
     }

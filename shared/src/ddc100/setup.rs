@@ -70,7 +70,7 @@ pub enum SetupProblem {
     Turn(u64),
     /// A time-out of 200 ms or less.
     Timeout(u64),
-    /// More units than a multi-drop line carries.
+    /// More units than a multi-drop line carries without repeaters; see [`Setup::hint`].
     MultiDrop(usize),
     /// A speed of 0.
     Baud,
@@ -112,7 +112,7 @@ impl fmt::Display for SetupProblem {
             ),
             Self::MultiDrop(n) => write!(
                 f,
-                "{n} units on a multi-drop line are too many: it carries {MOST_MULTI_DROP} without repeaters."
+                "A multi-drop line carries {MOST_MULTI_DROP} units without repeaters, and here are {n}."
             ),
             Self::Baud => f.write_str("The line needs a speed."),
         }
@@ -146,9 +146,6 @@ impl Setup {
         if self.units.len() > MOST_UNITS {
             found.push(SetupProblem::TooMany(self.units.len()));
         }
-        if self.shape == DdcShape::MultiDrop && self.units.len() > MOST_MULTI_DROP {
-            found.push(SetupProblem::MultiDrop(self.units.len()));
-        }
         let mut known = [false; 256];
         for member in &self.units {
             if !(1..=LAST_UNIT).contains(&member.unit) {
@@ -177,6 +174,14 @@ impl Setup {
             found.push(SetupProblem::Baud);
         }
         found
+    }
+
+    /// What may be right all the same: more units on a multi-drop line than it carries without
+    /// repeaters.
+    #[must_use]
+    pub fn hint(&self) -> Option<SetupProblem> {
+        let many = self.shape == DdcShape::MultiDrop && self.units.len() > MOST_MULTI_DROP;
+        many.then_some(SetupProblem::MultiDrop(self.units.len()))
     }
 
     /// True if the host has this port.

@@ -30,6 +30,11 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
     let mut untried = 0_usize;
     let mut heard = Vec::with_capacity(faults.len());
     for (place, (unit, pair)) in faults.units().enumerate() {
+        let end = End::Unit { place, unit };
+        if faults.is_unsteady(unit) {
+            findings.push(Finding::Unsteady(end));
+            continue;
+        }
         let state = |port| {
             if used(port) {
                 pair.get(port)
@@ -44,7 +49,7 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
         // A unit that was not tried on both ports says nothing yet.
         if let (Some(one), Some(two)) = (one, two) {
             heard.push(Heard {
-                end: End::Unit { place, unit },
+                end,
                 one: !one,
                 two: !two,
             });

@@ -355,3 +355,44 @@ fn the_word_of_the_unit_stays() {
     let faults: Vec<_> = table.units().map(|(_, f)| f).collect();
     assert_eq!(faults[2], Pair::both(None));
 }
+
+/// A unit that comes and goes is named, and does not keep the rest in doubt.
+#[test]
+fn an_unsteady_unit_is_left_out() {
+    let mut table = FaultTable::new(1..=4, true);
+    let mut pass = |round: u32, port, off: &[u8]| {
+        for unit in 1..=4 {
+            let flaps = unit == 2 && round.is_multiple_of(2);
+            table.note(unit, port, flaps || off.contains(&unit));
+        }
+        diagnose(Loop, &table)
+    };
+    let mut found = None;
+    for round in 0..8 {
+        for port in HostPort::BOTH {
+            found = Some(pass(round, port, &[3]));
+        }
+    }
+    let found = found.unwrap();
+    let keys: Vec<_> = found.findings.iter().map(Finding::key).collect();
+    assert_eq!(keys, ["unsteady", "off_line"]);
+    assert_eq!(found.unsettled, 0);
+    assert!(found.is_certain(&found.findings[1]) && !found.is_certain(&found.findings[0]));
+    // Going off once, and coming back, is no such thing.
+    let mut table = self::table(Loop, "00 00 00");
+    for failed in [true, false] {
+        for port in HostPort::BOTH {
+            table.note(2, port, failed);
+        }
+    }
+    assert!(!table.is_unsteady(2));
+    // And it is forgotten.
+    for round in 0..40 {
+        for port in HostPort::BOTH {
+            pass(1, port, &[]);
+        }
+        let _ = round;
+    }
+    let calm = pass(1, HostPort::One, &[]);
+    assert_eq!(calm.findings, [Finding::NoFault]);
+}

@@ -22,6 +22,7 @@ impl Finding {
             Self::Nothing { port: None, .. } => "Dead ports, breaks at both ends and units without power all look the same.".to_owned(),
             Self::Nothing { .. } => "A dead port, a break before the first unit and units without power all look the same.".to_owned(),
             Self::OneSided { .. } => "The signal gets past the unit both ways, so no break explains it; noise, a changing fault or a damaged port of the unit may.".to_owned(),
+            Self::Unsteady(_) => "A loose contact, noise and a supply that drops out look the same.".to_owned(),
             Self::Untried(_) => "The first passes are not over.".to_owned(),
             Self::NoFault
             | Self::PortDown(_)
@@ -112,6 +113,11 @@ impl fmt::Display for Finding {
                 }
                 f.write_str(".")
             }
+            Self::Unsteady(unit) => write!(
+                f,
+                "{} comes and goes: its answers began and ended several times in the last passes. It is left out of what is said of the cable.",
+                Capital(unit)
+            ),
             Self::OneSided { unit, port } => write!(
                 f,
                 "{} does not answer through {port}, but units beyond it do.",

@@ -248,7 +248,11 @@ fn set_ups_with_problems() {
     assert_eq!(many.problems(), [P::TooMany(251), P::Address(251)]);
     let mut drop = setup(29, false, 0);
     drop.shape = DdcShape::MultiDrop;
-    assert_eq!(drop.problems(), [P::MultiDrop(29)]);
+    assert_eq!(
+        (drop.problems(), drop.hint()),
+        (vec![], Some(P::MultiDrop(29)))
+    );
+    assert_eq!(setup(28, false, 0).hint(), None);
 }
 
 /// Anything that can happen.

@@ -154,8 +154,9 @@ impl Unit {
             UnitTrouble::LocalEsd => {
                 wrong.local_esd = on;
                 // The default of the emergency shutdown is to close (section 6.1, item 4).
-                self.drive.go(0);
-                if !on {
+                if on {
+                    self.drive.go(0);
+                } else {
                     self.drive.stop();
                 }
             }
