@@ -48,6 +48,38 @@ pub fn write_frame(
     framing: Framing,
     decoded: &Decoded,
 ) -> fmt::Result {
+    write_head(out, index, frame, framing, decoded)?;
+    write_tail(out, frame, decoded)
+}
+
+/// One HART frame with the step that it is in a procedure, if it is in any.
+///
+/// # Errors
+/// Only if writing fails.
+#[cfg(feature = "hart")]
+pub fn write_hart_frame(
+    out: &mut impl Write,
+    index: u32,
+    frame: &Frame,
+    framing: Framing,
+    decoded: &Decoded,
+    step: Option<&crate::hart::procedure::Step>,
+) -> fmt::Result {
+    write_head(out, index, frame, framing, decoded)?;
+    if let Some(step) = step {
+        out.write_str(r#","procedure":"#)?;
+        step.write_json(out)?;
+    }
+    write_tail(out, frame, decoded)
+}
+
+fn write_head(
+    out: &mut impl Write,
+    index: u32,
+    frame: &Frame,
+    framing: Framing,
+    decoded: &Decoded,
+) -> fmt::Result {
     let kind = if frame.is_noise() { "noise" } else { "frame" };
     write!(
         out,
@@ -69,6 +101,12 @@ pub fn write_frame(
             Some(pair) => write!(out, "{pair}")?,
             None => out.write_str("null")?,
         }
+    }
+    Ok(())
+}
+
+fn write_tail(out: &mut impl Write, frame: &Frame, decoded: &Decoded) -> fmt::Result {
+    if !frame.is_noise() {
         out.write_str(r#","fields":["#)?;
         for (id, field) in decoded.iter() {
             if id.get() > 0 {

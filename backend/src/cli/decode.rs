@@ -9,6 +9,7 @@ use input::{Input, Piece};
 use shared::capture::Capture;
 use shared::decode::Context;
 use shared::frame::Framing;
+use shared::hart::procedure::{Open, Procedures, Step};
 use shared::json;
 use shared::place::Place;
 use shared::problem::{Finding, Problem, Severity};
@@ -131,6 +132,7 @@ fn decode(source: impl Read, args: &Args, printer: &mut Printer<impl Write>) -> 
         decoded: Decoded::default(),
         next: 0,
         problems: VecDeque::new(),
+        procedures: Procedures::new(),
     };
     let mut empty = true;
     let mut piece = Piece::default();
@@ -142,6 +144,9 @@ fn decode(source: impl Read, args: &Args, printer: &mut Printer<impl Write>) -> 
     }
     stream.session.finish();
     stream.print(0, printer)?;
+    for open in stream.procedures.open() {
+        printer.open_procedure(&open)?;
+    }
     if empty && printer.tally.errors == 0 {
         printer.text_problem(
             0,
@@ -164,6 +169,8 @@ struct Stream {
     /// Index of the next entry to print.
     next: u32,
     problems: VecDeque<TextProblem>,
+    /// Procedures of HART that go on.
+    procedures: Procedures,
 }
 
 impl Stream {
@@ -187,7 +194,14 @@ impl Stream {
                 .session
                 .decode(self.next, &self.context, &mut self.decoded)
             {
-                printer.frame(self.next, &frame, &self.context, &self.decoded)?;
+                let step = self.step(&frame);
+                printer.frame(
+                    self.next,
+                    &frame,
+                    &self.context,
+                    &self.decoded,
+                    step.as_ref(),
+                )?;
             }
             self.next = self.next.saturating_add(1);
         }
@@ -198,6 +212,17 @@ impl Stream {
         let keep = if long { 0 } else { HELD_BACK };
         self.session.forget_before(self.next.saturating_sub(keep));
         Ok(())
+    }
+
+    /// What the entry that is printed next does in a procedure of HART.
+    fn step(&mut self, frame: &shared::frame::Frame) -> Option<Step> {
+        let framing = self.context.framing;
+        let hart = matches!(framing, Framing::Hart | Framing::HartIp);
+        if !hart || frame.is_noise() || frame.marks.is_damaged() {
+            return None;
+        }
+        self.procedures
+            .frame(framing, self.decoded.bytes(), self.next)
     }
 
     /// Prints the problems of the text that stand before the byte at `offset`.
@@ -235,6 +260,7 @@ impl<W: Write> Printer<W> {
         frame: &shared::frame::Frame,
         context: &Context,
         decoded: &Decoded,
+        step: Option<&Step>,
     ) -> io::Result<()> {
         if frame.is_noise() {
             self.tally.noise += u64::from(frame.len);
@@ -243,9 +269,14 @@ impl<W: Write> Printer<W> {
         }
         self.tally.errors += u64::from(!decoded.is_ok());
         let written = match self.format {
-            Format::Json => {
-                json::write_frame(&mut self.buffer, index, frame, context.framing, decoded)
-            }
+            Format::Json => json::write_hart_frame(
+                &mut self.buffer,
+                index,
+                frame,
+                context.framing,
+                decoded,
+                step,
+            ),
             Format::Text => text::write_frame(
                 &mut self.buffer,
                 self.colour,
@@ -253,7 +284,17 @@ impl<W: Write> Printer<W> {
                 frame,
                 context.framing,
                 decoded,
+                step,
             ),
+        };
+        self.pass_on(written)
+    }
+
+    /// Something that was begun and not ended.
+    fn open_procedure(&mut self, open: &Open) -> io::Result<()> {
+        let written = match self.format {
+            Format::Json => open.write_json(&mut self.buffer),
+            Format::Text => text::write_open(&mut self.buffer, self.colour, open),
         };
         self.pass_on(written)
     }

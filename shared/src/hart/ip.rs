@@ -229,13 +229,17 @@ fn direct(
     Some(())
 }
 
+/// The frame inside a message, from its delimiter on, if it carries one.
+pub(super) fn carried(bytes: &[u8]) -> Option<&[u8]> {
+    let carries = Header::of(bytes)?.id == TOKEN_PASSING;
+    bytes
+        .get(HEADER..)
+        .filter(|frame| carries && !frame.is_empty())
+}
+
 /// Address, master and command of the frame inside, as keys of a JSON object.
 pub(crate) fn write_who(out: &mut impl fmt::Write, bytes: &[u8]) -> fmt::Result {
-    let carried = Header::of(bytes).is_some_and(|h| h.id == TOKEN_PASSING);
-    write_head(
-        out,
-        bytes.get(HEADER..).filter(|_| carried).and_then(identity),
-    )
+    write_head(out, carried(bytes).and_then(identity))
 }
 
 /// Requests that wait for an answer, by their sequence number.

@@ -23,6 +23,7 @@ pub mod model;
 pub mod ne107;
 mod payload;
 pub mod problem;
+pub mod procedure;
 mod shape;
 pub(crate) mod stream;
 pub mod values;

@@ -166,3 +166,28 @@ fn hart_frames_say_who_and_what() {
     let who = "#0  request  2EDD012345, primary master, command 3 Read dynamic variables";
     assert!(text.starts_with(who), "{text}");
 }
+
+/// Command 40 with 4 mA and the answer to it (section 8.1 of PUB092-003-00), and no end of it.
+#[test]
+fn procedures_are_followed_and_what_stands_is_said() {
+    let list = b"FFFFFFFFFF 82AEDD012345 28 04 40800000 7A\n\
+        FFFFFFFFFF 86AEDD012345 28 06 0008 40800000 74\n";
+    let (text, tally) = decoded(list, FramingArg::Hart, Format::Text);
+    assert_eq!(tally.errors, 0, "{text}");
+    assert!(
+        text.contains("Fixed current and trim (run 1): Asks to fix"),
+        "{text}"
+    );
+    let last = "Fixed current mode was not left again";
+    assert!(text.contains(last), "{text}");
+    let (text, _) = decoded(list, FramingArg::Hart, Format::Json);
+    let lines: Vec<serde_json::Value> = text
+        .lines()
+        .map(|l| serde_json::from_str(l).unwrap())
+        .collect();
+    assert_eq!(lines[1]["procedure"]["step"], "fix-current");
+    assert_eq!(
+        (&lines[2]["kind"], &lines[2]["since"]),
+        (&"procedure".into(), &1.into())
+    );
+}

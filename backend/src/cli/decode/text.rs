@@ -2,6 +2,7 @@
 
 use super::Tally;
 use shared::frame::{Frame, Framing, Role};
+use shared::hart::procedure::{Open, Step};
 use shared::place::Place;
 use shared::problem::{Problem, Severity};
 use shared::render::Spaced;
@@ -52,6 +53,7 @@ pub(super) fn write_frame(
     frame: &Frame,
     framing: Framing,
     decoded: &Decoded,
+    step: Option<&Step>,
 ) -> fmt::Result {
     let paint = Paint(colour);
     let (on, off) = paint.head();
@@ -86,6 +88,9 @@ pub(super) fn write_frame(
         }
     }
     out.write_char('\n')?;
+    if let Some(step) = step {
+        write_step(out, &paint, step)?;
+    }
     for problem in decoded.problems() {
         write_problem(out, &paint, problem, frame.offset)?;
     }
@@ -97,6 +102,28 @@ pub(super) fn write_frame(
         write_field(out, &paint, frame, decoded, field, decoded.depth(id))?;
     }
     Ok(())
+}
+
+/// What the frame does in a procedure.
+fn write_step(out: &mut impl Write, paint: &Paint, step: &Step) -> fmt::Result {
+    writeln!(
+        out,
+        "  {} (run {}): {}",
+        step.procedure.label(),
+        step.run,
+        step.text
+    )?;
+    for doubt in &step.doubts {
+        let (on, off) = paint.severity(doubt.severity());
+        writeln!(out, "  {on}{}{off}: {doubt}", doubt.severity().key())?;
+    }
+    Ok(())
+}
+
+/// A procedure that was not ended, without the line end.
+pub(super) fn write_open(out: &mut impl Write, colour: bool, open: &Open) -> fmt::Result {
+    let (on, off) = Paint(colour).severity(Severity::Warning);
+    write!(out, "{on}{}{off}: {open}", Severity::Warning.key())
 }
 
 fn write_field(

@@ -87,7 +87,8 @@ impl HartBurst {
     fn understand(&mut self, message: &Message, at: Micros) {
         if !message.is_request() {
             if message.damage == 0 && message.is_answer() {
-                self.primary = !message.is_primary();
+                // As the answer did, so that the other master is next.
+                self.primary = message.is_primary();
                 self.plan(at, AT_ONCE);
             }
             return;

@@ -138,16 +138,15 @@ impl HartMaster {
                 self.window = (self.after(at, RT2), None);
             }
             // With a burst device on the line its message follows every answer and hands the token.
-            6 if self.bursts.is_some_and(|seen| at.since(seen) < BURSTS_US) => {
-                self.window = (self.after(at, RT2), None);
-            }
+            6 if self.bursts.is_some_and(|seen| at.since(seen) < BURSTS_US) => self.wait_quiet(at),
             6 if !mine => self.take_token(at),
             1 => {
+                // Like an answer: a burst for one master lets the other one begin.
                 self.bursts = Some(at);
                 if mine {
-                    self.take_token(at);
+                    self.wait_quiet(at);
                 } else {
-                    self.window = (self.after(at, RT2), None);
+                    self.take_token(at);
                 }
             }
             // A request of the other: its answer begins within STO.
