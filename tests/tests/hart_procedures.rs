@@ -298,7 +298,7 @@ fn pairs_hold_beside_bursts_and_a_second_master() {
         .collect();
     let found = scan(&bytes, Framing::Hart);
     assert_eq!(found.len(), frames.len());
-    let pairs: Vec<Option<u32>> = found.iter().map(|f| f.pair()).collect();
+    let pairs: Vec<Option<u32>> = found.iter().map(shared::frame::Frame::pair).collect();
     let expected = [
         Some(2),
         None,
