@@ -20,9 +20,11 @@ pub mod ddc100;
 mod demand;
 mod dop;
 mod drive;
+mod fault;
 mod files;
 #[cfg(feature = "hart")]
 pub mod hart;
+mod history;
 mod log;
 mod publish;
 mod setup;
@@ -34,11 +36,13 @@ mod write;
 use crate::capture::Micros;
 use crate::map::row::{Level, Model};
 use clock::Stamp;
-use drive::Drive;
+use drive::{Demand, Drive, Motion};
+use history::{History, Partial, source};
 use log::Log;
 use store::{Store, at};
 
 pub use dop::{Dop, DopSetup};
+pub use fault::Fault;
 
 /// What an actuator does while nobody commands it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -82,6 +86,14 @@ pub struct Icon3000 {
     /// Level that is logged in; meant for ICON3000v2 only.
     level: Level,
     busy: bool,
+    /// Every request fails with "server device failure".
+    failing: bool,
+    faults: Vec<Fault>,
+    /// Files of an ICON3000v2.
+    history: History,
+    /// The test that is going on, and the tenths of a second since its command or its turn.
+    test: Partial,
+    test_tenths: u16,
     /// True: FC 17 counts 84 bytes, as the standard wants; false: 82, as the manual prints.
     full_report: bool,
     /// Time of the first and the last `advance`.
@@ -159,6 +171,11 @@ impl Icon3000 {
             counters: Counters::default(),
             level: Level::User,
             busy: false,
+            failing: false,
+            faults: Vec::new(),
+            history: History::default(),
+            test: Partial::default(),
+            test_tenths: 0,
             full_report: false,
             first: None,
             now: Micros::default(),
@@ -194,6 +211,11 @@ impl Icon3000 {
     /// Makes it answer everything with "server device busy", or not.
     pub const fn set_busy(&mut self, busy: bool) {
         self.busy = busy;
+    }
+
+    /// Makes it answer everything with "server device failure", or not.
+    pub const fn set_failing(&mut self, failing: bool) {
+        self.failing = failing;
     }
 
     /// Makes the byte count of FC 17 the one of the standard (84), or the printed one (82).
@@ -278,14 +300,24 @@ impl Icon3000 {
         self.mains();
         self.test();
         let demand = self.demand();
+        let is_held = match demand {
+            Demand::Stop => false,
+            Demand::Open => self.is_held(true),
+            Demand::Close => self.is_held(false),
+            Demand::Reach(to) | Demand::Follow(to) => self.is_held(to > self.drive.position()),
+        };
+        let demand = if is_held { Demand::Stop } else { demand };
         let dead_band = u32::from(self.store.get(at::DEAD_BAND)).saturating_mul(100);
         let inhibit = u32::from(self.store.get(at::MOTION_INHIBIT)).saturating_mul(1000);
         let stamp = self.stamp();
+        let before = self.drive.motion;
         let done = self.drive.step(STEP_MS, demand, dead_band, inhibit);
+        self.keep_history(before);
         if done.hi_torque {
             self.warnings.add(self.wall, stamp, 2);
         }
         if let Some(stroke) = done.stroke {
+            self.history.stroke(&stroke, self.wall);
             setup::curve(&mut self.store, &stroke, stamp, true);
         }
         // The end of travel clears enumerated open and close commands.
@@ -297,6 +329,44 @@ impl Icon3000 {
         if at_end {
             self.command = command::NONE;
         }
+    }
+
+    /// True if a fault keeps the motor from running in this direction.
+    fn is_held(&self, opening: bool) -> bool {
+        self.faults.iter().any(|f| f.stops(opening))
+    }
+
+    /// Notes starts of the motor with their cause, and samples of the recorders.
+    fn keep_history(&mut self, before: Motion) {
+        let now = self.drive.motion;
+        if now != before {
+            let code = match now {
+                Motion::Still => 0,
+                Motion::Opening => 1,
+                Motion::Closing => 2,
+            };
+            let cause = if self.is_esd() {
+                source::ESD
+            } else if self.is_fail_safe() {
+                source::FAIL_SAFE
+            } else if self.pst != Pst::Off {
+                source::PST
+            } else if self.is_positioner() {
+                source::BUS_REQUEST
+            } else if self.is_commanded() {
+                source::BUS
+            } else if self.programme == Programme::Modulating {
+                source::ANALOG_REQUEST
+            } else {
+                source::LOCAL
+            };
+            self.history.event(self.wall, code, cause);
+        }
+        let every = u64::from(history::TORQUE_EVERY).saturating_mul(1000);
+        if now != Motion::Still && self.age_ms.is_multiple_of(every) {
+            self.history.torque(self.wall, self.drive.load.into());
+        }
+        self.history.tick(self.wall);
     }
 
     /// A dip of the mains, once in a quarter of an hour.

@@ -10,6 +10,7 @@ use super::{Icon3000, count};
 pub(super) const ILLEGAL_FUNCTION: u8 = 1;
 pub(super) const ILLEGAL_ADDRESS: u8 = 2;
 pub(super) const ILLEGAL_VALUE: u8 = 3;
+const FAILURE: u8 = 4;
 const BUSY: u8 = 6;
 
 /// Numbers of coils and discrete inputs.
@@ -49,6 +50,8 @@ impl Icon3000 {
         let outcome = if self.busy {
             count(&mut self.counters.busy);
             Err(BUSY)
+        } else if self.failing {
+            Err(FAILURE)
         } else {
             self.function(*function, data)
         };

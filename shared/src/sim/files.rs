@@ -1,4 +1,4 @@
-//! FC 20: the logs as files (section 8.11). Layout by Modbus Application Protocol V1.1b3, section
+//! FC 20: logs and curves as files (section 8.11). Layout by Modbus Application Protocol V1.1b3, section
 //! 6.14; the manual prints neither the response nor its exceptions (reading E66).
 
 use super::Icon3000;
@@ -30,7 +30,10 @@ impl Icon3000 {
             let file = match number(f0, f1) {
                 2 => self.alarms.file(),
                 3 => self.warnings.file(),
-                _ => return Err(ILLEGAL_ADDRESS),
+                number => {
+                    let number = u16::try_from(number).map_err(|_| ILLEGAL_ADDRESS)?;
+                    self.history.file(number).ok_or(ILLEGAL_ADDRESS)?
+                }
             };
             let (first, len) = (number(r0, r1), number(l0, l1));
             if reference != REFERENCE || len == 0 {

@@ -56,11 +56,15 @@ impl Icon3000 {
         self.warnings.publish(store, at::WARNING_LOG);
         store.set(at::COMMAND_BITS, self.bits);
         store.set(at::COMMAND, self.command);
-        let warnings = u16::from(self.drive.hi_torque) << 1 | u16::from(self.drive.low_mains) << 3;
+        let [of_faults, alarms_1, alarms_2] = self.fault_bits();
+        let store = &mut self.store;
+        let warnings =
+            u16::from(self.drive.hi_torque) << 1 | u16::from(self.drive.low_mains) << 3 | of_faults;
         // Bit 15 is the general warning.
         let any = u16::from(warnings != 0) << 15;
         store.set(at::WARNINGS, warnings | any);
-        store.set(at::ALARMS_1, u16::from(self.drive.no_mains) << 8);
+        store.set(at::ALARMS_1, u16::from(self.drive.no_mains) << 8 | alarms_1);
+        store.set(at::ALARMS_1.saturating_add(1), alarms_2);
         store.set(at::MOTOR_ALARMS, self.alarms.count(&[2, 3]));
         store.set(
             at::MOTOR_ALARMS.saturating_add(1),
@@ -107,8 +111,9 @@ impl Icon3000 {
         );
         let din = self.conditions(at::DIN_FUNCTION, at::DIN_POSITION, 6);
         let interlock = self.store.get(at::INTERLOCK_COMMANDS);
-        let has_alarm = drive.no_mains;
-        let has_warning = drive.hi_torque || drive.low_mains;
+        let [warnings, alarms_1, alarms_2] = self.fault_bits();
+        let has_alarm = drive.no_mains || alarms_1 != 0 || alarms_2 != 0;
+        let has_warning = drive.hi_torque || drive.low_mains || warnings != 0;
         let status_1 = bits([
             drive.is_closed(),
             drive.is_open(),
@@ -248,6 +253,7 @@ impl Icon3000 {
             Level::Service => 2,
             Level::Manufacturer => 3,
         };
+        let stored = self.history.stored();
         let store = &mut self.store;
         store.set(at::LEVEL_LOGGED, level);
         store.set(at::OUTPUTS, contacts);
@@ -265,6 +271,7 @@ impl Icon3000 {
             word(request.checked_div(100).unwrap_or(0)),
         );
         store.set(at::PST_PROGRESS, progress);
+        store.fill(at::OPEN_CURVES, stored);
         let encoder = between(40_000, 1_640_000, position);
         store.long(at::ENCODER, encoder);
         let wheels = [1_u32, 23, 29].map(|by| {

@@ -2,6 +2,7 @@
 
 use super::clock::Stamp;
 use super::drive::{self, Stroke};
+use super::history::{History, source};
 use super::store::{Store, at};
 use super::{Icon3000, command};
 use crate::address::Table;
@@ -105,7 +106,7 @@ fn identity(store: &mut Store, model: Model, tag: &str) {
 
 /// The set-up of an ICON3000v2.
 fn version_2(store: &mut Store) {
-    let settings: [(u16, &[u16]); 17] = [
+    let settings: [(u16, &[u16]); 16] = [
         // Open limit, close limit, position at least and at most, closing, opening, running, alarm.
         (at::RELAY_FUNCTION, &[0, 1, 2, 3, 4, 5, 6, 26]),
         (at::RELAY_CONTACT, &[1; 8]),
@@ -123,12 +124,11 @@ fn version_2(store: &mut Store) {
         (at::CLOSE_TORQUE, &[90]),
         (at::PST_TRAVEL, &[15]),
         (at::FAIL_SAFE_ENABLED, &[1]),
-        (at::OPEN_CURVES, &[1, 1, 0, 0]),
     ];
     for (address, words) in settings {
         store.fill(address, words.iter().copied());
     }
-    store.fill(at::SET_REFERENCES, [1, 1]);
+    store.fill(at::SET_REFERENCES, [1, 1, 1, 1]);
     store.set(at::ENCODER_STATUS, 1 << 7);
     store.long(at::ENCODER_LIMITS, 40_000);
     store.long(at::ENCODER_LIMITS.saturating_add(2), 1_640_000);
@@ -194,6 +194,10 @@ pub(super) fn curve(store: &mut Store, stroke: &Stroke, stamp: Stamp, last: bool
 impl Icon3000 {
     /// What happened before this actuator was switched on, by its own clock.
     pub(super) fn power_up(&mut self) {
+        if self.is_v2() {
+            self.history = History::new(self.wall);
+            self.history.event(self.wall, 0, source::POWER_UP);
+        }
         let history = [
             (211, 9_411, 11, true),
             (96, 51_002, 5, true),

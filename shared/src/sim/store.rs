@@ -90,7 +90,6 @@ pub(super) mod at {
     pub(in crate::sim) const OUTPUT_BITS: u16 = 3509;
     pub(in crate::sim) const LOGIC_REQUEST: u16 = 3510;
     pub(in crate::sim) const OPEN_CURVES: u16 = 3511;
-    pub(in crate::sim) const PST_STORED: u16 = 3513;
     pub(in crate::sim) const PST_PROGRESS: u16 = 3515;
     pub(in crate::sim) const PST_STATUS: u16 = 3516;
     pub(in crate::sim) const ENCODER: u16 = 3519;

@@ -1,5 +1,8 @@
 //! Layouts, records and plans, by hand from section 8.11 of VCIOM-16345-EN.
 
+#[cfg(feature = "sim")]
+mod device;
+
 use super::model::{FILES, File, Numbering};
 use super::plan::{FileRead, MOST_RECORDS, Span, plan};
 use super::read::Log;
