@@ -15,7 +15,10 @@
 //! Source: VCIOM-16345-EN, section 8.11, with the readings of its manual.
 
 pub mod collect;
+pub mod config;
 pub mod counters;
+pub mod curve;
+pub mod health;
 pub mod identity;
 pub mod model;
 pub mod plan;
@@ -23,7 +26,9 @@ pub mod read;
 pub mod records;
 pub mod say;
 pub mod snapshot;
+pub mod stroke;
 pub(crate) mod tree;
+pub mod words;
 
 #[cfg(test)]
 mod tests;

@@ -1,0 +1,128 @@
+//! What alarms and warnings mean for the device: one list, worst first, with what to check.
+//!
+//! The manual has no categories of NAMUR NE 107; the mapping in `health.csv` is ours, and each line
+//! gives its reason.
+
+use super::model::{HEALTH, Meaning, Ne107};
+use crate::address::Table;
+use crate::image::Image;
+use crate::map::row::{Kind, Model, Row, Source};
+
+/// Something that is not as it should be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What it means, why, and what to check.
+    pub meaning: &'static Meaning,
+    /// The register that says so.
+    pub row: &'static Row,
+}
+
+impl Finding {
+    /// Where it stands: `HR 3010, bit 7`.
+    #[must_use]
+    pub fn place(&self) -> String {
+        let table = match self.row.table {
+            Table::Input => "IR",
+            _ => "HR",
+        };
+        format!("{table} {}, bit {}", self.row.address, self.meaning.value)
+    }
+
+    /// Where the bit is described; its category is ours.
+    #[must_use]
+    pub const fn source(&self) -> Source {
+        self.row.source
+    }
+}
+
+/// How a device is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Health {
+    /// What is not as it should be, worst first; of one category in the order of the data.
+    pub findings: Vec<Finding>,
+    /// Registers that were not read: what they would say is not known.
+    pub unread: Vec<&'static Row>,
+}
+
+impl Health {
+    /// The worst category; `None` if nothing was found.
+    #[must_use]
+    pub fn worst(&self) -> Option<Ne107> {
+        self.findings.first().map(|f| f.meaning.status)
+    }
+
+    /// True if every register was read and nothing was found.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.findings.is_empty() && self.unread.is_empty()
+    }
+}
+
+/// Place of a category in the list: failure, function check, out of specification, maintenance.
+#[must_use]
+pub const fn rank(status: Ne107) -> u8 {
+    match status {
+        Ne107::Failure => 0,
+        Ne107::CheckFunction => 1,
+        Ne107::OutOfSpecification => 2,
+        Ne107::Maintenance => 3,
+    }
+}
+
+/// The health of a device from what was read of it.
+#[must_use]
+pub fn health(model: Model, image: &Image) -> Health {
+    let mut health = Health::default();
+    let mut sets: Vec<&str> = Vec::new();
+    for meaning in &HEALTH {
+        if sets.contains(&meaning.set) {
+            continue;
+        }
+        sets.push(meaning.set);
+        let Some(row) = register(model, image, meaning.set) else {
+            continue;
+        };
+        let Some(bytes) = image.bytes(row) else {
+            health.unread.push(row);
+            continue;
+        };
+        let word = bytes
+            .first_chunk::<2>()
+            .map_or(0, |pair| u16::from_be_bytes(*pair));
+        let set = HEALTH.iter().filter(|m| m.set == meaning.set);
+        let active = set.filter(|m| word.wrapping_shr(m.value.into()) & 1 != 0);
+        health
+            .findings
+            .extend(active.map(|meaning| Finding { meaning, row }));
+    }
+    health.findings.sort_by_key(|f| rank(f.meaning.status));
+    health
+}
+
+/// The register that holds a set of bits: of several, one that was read; holding registers first.
+fn register(model: Model, image: &Image, set: &str) -> Option<&'static Row> {
+    let map = model.map();
+    let rows = [Table::Holding, Table::Input]
+        .into_iter()
+        .flat_map(|table| map.rows_of(table).iter().copied())
+        .filter(|r| r.kind == Kind::Bits && r.set.is_some_and(|s| s.name == set));
+    let rows: Vec<_> = rows.collect();
+    let read = rows.iter().find(|row| image.bytes(row).is_some());
+    read.or(rows.first()).copied()
+}
+
+/// What a code of the alarms log (file 2, registers 3090 and on) means.
+#[must_use]
+pub fn alarm(code: u16) -> Option<&'static Meaning> {
+    of_code("alarm_code", code)
+}
+
+/// What a code of the warnings log (file 3, registers 3115 and on) means.
+#[must_use]
+pub fn warning(code: u16) -> Option<&'static Meaning> {
+    of_code("warning_code", code)
+}
+
+fn of_code(set: &str, code: u16) -> Option<&'static Meaning> {
+    HEALTH.iter().find(|m| m.set == set && m.value == code)
+}
