@@ -210,7 +210,7 @@ impl Entry {
         self.get("time").and_then(Item::time)
     }
 
-    /// True if no record of it was read.
+    /// True if no whole value of it was read.
     #[must_use]
     pub fn is_unread(&self) -> bool {
         self.items.iter().all(Option::is_none)
