@@ -139,7 +139,8 @@ impl Guest {
 
     /// Sends a message to the backend, as JSON. It is lost while there is no connection.
     pub fn send(self, text: &str) {
-        self.host.with_value(|host| call(&host.send, text));
+        // The program may be closing.
+        let _gone = self.host.try_with_value(|host| call(&host.send, text));
     }
 
     /// Goes to an address of the page, from `#` on.

@@ -129,9 +129,12 @@ impl Device {
         Self::ALL.into_iter().chain(rotork).find(|d| d.key() == key)
     }
 
-    /// Its map.
+    /// Its map; `None` in a program that was compiled without maps.
     #[must_use]
     pub fn map(self) -> Option<&'static DeviceMap> {
+        if !cfg!(feature = "maps") {
+            return None;
+        }
         match self {
             Self::None | Self::Dop | Self::Rotork(_) => None,
             Self::Icon3000 => Some(Model::Icon3000.map()),

@@ -194,6 +194,31 @@ async fn the_family_names_the_status_bits() {
     page.assert_clean().await;
 }
 
+/// The condensed status map without a device: the example of table 20, beside that of table 23.
+#[tokio::test]
+async fn the_status_map_needs_no_device() {
+    let server = Server::start(&[]);
+    let page = Page::open(&server.url("/#/decode?view=map")).await;
+    page.show(1440, 900, Scheme::Light).await;
+    page.wait_for("[data-testid=hart-map]").await;
+    // Table 20: valve obstructed (byte 1 bit 0, index 16) is out of specification (4).
+    let category = "return document.querySelector('[data-testid=hart-map-row][data-index=\"16\"]')
+        .dataset.category";
+    assert_eq!(page.eval(category).await, "4");
+    look(&page, "map").await;
+    choose(&page, "hart-map-beside", "ck_example").await;
+    page.wait_for("[data-testid=hart-map-row].differs").await;
+    // Table 23: the same bit is a function check (5).
+    choose(&page, "hart-map-source", "ck_example").await;
+    until(
+        &page,
+        "[data-testid=hart-map-row][data-index='16']",
+        "$.dataset.category === '5'",
+    )
+    .await;
+    page.assert_clean().await;
+}
+
 /// The samples: a handheld's session, a damaged stream whose causes are named, a gateway.
 #[tokio::test]
 async fn samples_show_what_they_promise() {

@@ -51,6 +51,9 @@ const LATER: [&str; 4] = ["diagnostics", "network", "actuator", "hart"];
 /// The programs that are compiled with a feature, which the page does without.
 const FEATURED: [(&str, &str); 2] = [("hart", "hart"), ("actuator", "icon")];
 
+/// The program that shows no registers, so that it needs no maps.
+const WITHOUT_MAPS: &str = "hart";
+
 /// The code of `shared` is small.
 const SMALL: &str = "profile.web.package.shared.opt-level=\"z\"";
 
@@ -139,6 +142,9 @@ fn compile() -> Result<PathBuf> {
     let featured = FEATURED.map(|(binary, feature)| {
         let mut command = shell::cargo(args);
         command.args(["--config", SMALL, "--bin", binary, "--features", feature]);
+        if binary == WITHOUT_MAPS {
+            command.arg("--no-default-features");
+        }
         command
     });
     for mut command in [page, later].into_iter().chain(featured) {

@@ -121,6 +121,15 @@ fn place(live: Live, router: Router, device: Option<&String>) -> Option<Place> {
     let tab = match (route.screen, device) {
         (Screen::Device(tag, tab), Some(device)) if tag == *device => tab,
         (Screen::Dop(tab) | Screen::Snapshots(tab) | Screen::Network(tab), None) => tab,
+        (Screen::Traffic(bus), None) => {
+            let first = || {
+                live.plant
+                    .with(|p| p.buses.first().map(|b| b.info.name.clone()))
+            };
+            let bus = bus.or_else(first).unwrap_or_default();
+            route.query.push(("bus".to_owned(), bus));
+            "bus".to_owned()
+        }
         (Screen::Decode, None) => {
             let store: DecodeStore = expect_context();
             let device = store.device.get().map_or("", Device::key);

@@ -13,8 +13,22 @@
 //! - **Exchanges are kept, meanings are made.** What the backend sends are frames as they were on
 //!   the line; every value shown is decoded from them by [`shared::hart`].
 //! - **Not read is not zero.** What was not read, was refused or is not answered says so.
+//!
+//! # Hooks for tests
+//!
+//! | where | hooks |
+//! |---|---|
+//! | decode | `hart-view` (`data-view`: `frames`, `map`), and those of the decode page |
+//! | tabs | `hart-tab` (`data-tab`) |
+//! | a value | `hart-value` (`data-key`: command and field), `value-facts` |
+//! | overview | `hart-overview`, `hart-forced`, `hart-position`, `hart-answered`, `hart-ne107`, `hart-set` (`data-key`), `hart-trend` |
+//! | other tabs | `hart-setup`, `hart-unavailable`, `hart-variables`, `hart-status`, `hart-byte`, `hart-bit` (`data-key`, `data-on`), `hart-read`, `hart-job`, `hart-cancel` |
+//! | status map | `hart-map-page`, `hart-map-view`, `hart-map`, `hart-map-row` (`data-index`, `data-category`), `hart-map-source`, `hart-map-beside`, `hart-map-family`, `hart-map-save`, `hart-map-file`, `hart-result` |
+//! | a line | `hart-bus`, `hart-link`, `hart-scan`, `hart-tag`, `hart-find`, `hart-find-long`, `hart-search`, `hart-found`, and those of the traffic |
 
+pub mod markup;
 mod pages;
 pub mod state;
+pub mod store;
 
 pub use pages::Hart;

@@ -180,6 +180,14 @@ impl Live {
 
     fn take(self, message: ToPage, text: String) {
         let is_hello = matches!(message, ToPage::Hello { .. });
+        if let ToPage::Capture { bus, .. } | ToPage::Lagged { bus, .. } = &message
+            && self
+                .plant
+                .with_untracked(|plant| plant.bus(bus).is_some_and(|bus| !bus.is_known()))
+        {
+            self.pass_on(&text);
+            return;
+        }
         let mut answer = Vec::new();
         self.plant
             .update_untracked(|plant| answer = plant.take(message, now_ms()));
@@ -299,6 +307,20 @@ impl Live {
         let screen = memo(move || {
             let route = router.route();
             (route.is_live(), route.screen)
+        });
+        // On its own page a HART device is watched by its program.
+        effect(move || {
+            let up = self.conn.get().is_up();
+            let (_, screen) = screen.get();
+            let hart = devices.with(|devices| {
+                let hart = devices.iter().filter(|(_, d)| d.family().is_some());
+                hart.map(|(tag, _)| tag.clone()).collect::<Vec<_>>()
+            });
+            for tag in hart.iter().filter(|_| up) {
+                if !matches!(&screen, Screen::Device(here, _) if here == tag) {
+                    self.send_text(&wire::hart::watch_in_list(tag, screen == Screen::Devices));
+                }
+            }
         });
         effect(move || {
             let up = self.conn.get().is_up();

@@ -7,7 +7,7 @@ use super::Markup;
 use super::control::{Button, Choice, tick};
 use crate::decode_store::{FOREIGN, Progress};
 use crate::format::{count, size, thousands};
-use crate::state::samples::SAMPLES;
+use crate::state::samples::{SAMPLES, Sample};
 use crate::state::work::{Work, form_label};
 
 /// What the choices show.
@@ -162,7 +162,10 @@ pub fn welcome(html: &mut Markup) {
     html.close("p");
     html.node("h2", "", "Or try one");
     html.open("ul", &[("class", "sample-list")]);
-    for sample in &SAMPLES {
+    // A program decodes what it was made for.
+    let own =
+        |s: &&Sample| !cfg!(feature = "hart") || s.device.is_some_and(|d| d.family().is_some());
+    for sample in SAMPLES.iter().filter(own) {
         html.open("li", &[]).open(
             "button",
             &[

@@ -99,10 +99,16 @@ pub fn row(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u6
     html.node("span", "device-state", state);
     html.node("span", "device-alarms", &alarm_words(overview));
     html.node("span", "quiet device-model", device.device.label());
-    let place = format!("unit {} · {}", device.info.unit, device.info.bus);
+    let place = format!("{} · {}", unit(device), device.info.bus);
     html.node("span", "quiet device-bus", &place);
     html.node("span", "num quiet device-age", &since(device, now));
     html.close("div");
+}
+
+/// Where a device is on its bus.
+fn unit(device: &DeviceState) -> String {
+    let word = if device.is_hart() { "poll" } else { "unit" };
+    format!("{word} {}", device.info.unit)
 }
 
 fn since(device: &DeviceState, now: u64) -> String {
@@ -128,10 +134,10 @@ pub fn header(html: &mut Markup, device: &DeviceState, overview: &Overview, now:
     html.node("h1", "", &device.info.tag);
     html.open("p", &[("class", "quiet device-place")]);
     html.text(&format!(
-        "{} · {} · unit {}",
+        "{} · {} · {}",
         device.device.label(),
         device.info.bus,
-        device.info.unit
+        unit(device)
     ));
     if !device.info.description.is_empty() {
         html.text(" · ").text(&device.info.description);

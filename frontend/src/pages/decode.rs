@@ -23,6 +23,10 @@ pub fn DecodePage() -> impl IntoView {
     {
         store.open_sample(sample);
     }
+    // What the program of HART shows without an input.
+    if router.peek().get("view").is_some() && store.hosted.with_untracked(Option::is_none) {
+        store.choose_framing("hart");
+    }
     effect(move || router.set("sample", store.sample.get().unwrap_or_default()));
 
     let hosted = memo(move || store.hosted.with(Option::is_some));

@@ -8,7 +8,7 @@ use shared::map::row::DeviceMap;
 
 use crate::components::conn::ConnNotice;
 use crate::components::drawn::{Draw, Drawn};
-use crate::components::program::{ACTUATOR, DIAGNOSTICS, NETWORK, Program};
+use crate::components::program::{ACTUATOR, DIAGNOSTICS, HART, NETWORK, Program};
 use crate::components::traffic::TrafficView;
 use crate::components::values::ValuesView;
 use crate::erased::{effect, memo};
@@ -37,9 +37,16 @@ pub fn DevicePage(
         live.plant
             .with(|p| tag.with_value(|t| p.device(t).map(|d| d.device)))
     });
-    let is_dop = memo(move || {
+    // The program that draws all of its page.
+    let own = memo(move || {
+        let own = |d: &DeviceState| {
+            if d.is_dop() {
+                return Some(DIAGNOSTICS);
+            }
+            d.is_hart().then_some(HART)
+        };
         live.plant
-            .with(|p| tag.with_value(|t| p.device(t).is_some_and(DeviceState::is_dop)))
+            .with(|p| tag.with_value(|t| p.device(t).and_then(own)))
     });
     effect(move || {
         if let (true, Some(kind)) = (live.conn.get().is_up(), kind.get()) {
@@ -61,7 +68,7 @@ pub fn DevicePage(
             html.node("p", "empty", "There is no such device here.");
         }
         // Programs draw their own tabs.
-        if !is_dop.get() {
+        if own.get().is_none() {
             let deep = kind.get().is_some_and(Device::is_icon);
             tag.with_value(|t| device::tabs(html, t, tab.get(), deep));
         }
@@ -74,8 +81,8 @@ pub fn DevicePage(
     });
     let body = move || {
         // Its program follows the tabs by itself.
-        if is_dop.get() {
-            return program(DIAGNOSTICS, tag.get_value());
+        if let Some(name) = own.get() {
+            return program(name, tag.get_value());
         }
         match (kind.get(), shown.get()) {
         (Some(kind), Tab::Overview) if kind.key().starts_with("ddc100") => {

@@ -4,10 +4,12 @@ use leptos::prelude::*;
 
 use crate::browser::value_of;
 use crate::components::conn::ConnNotice;
+use crate::components::program::{HART, Program};
 use crate::components::traffic::TrafficView;
 use crate::erased::memo;
 use crate::live::Live;
 use crate::router::Router;
+use crate::state::plant::BusState;
 use crate::state::route::{Route, Screen};
 
 /// The frames of one bus.
@@ -45,10 +47,15 @@ pub fn TrafficPage() -> impl IntoView {
             .collect::<Vec<_>>()
     };
     let body = move || {
-        bus.get()
-            .filter(|name| buses.with(|b| b.contains(name)))
-            .map(|bus| view! { <TrafficView bus=bus/> })
-            .into_any()
+        let bus = bus.get().filter(|name| buses.with(|b| b.contains(name)))?;
+        let known = live
+            .plant
+            .with_untracked(|p| p.bus(&bus).is_some_and(BusState::is_known));
+        Some(if known {
+            view! { <TrafficView bus=bus/> }.into_any()
+        } else {
+            view! { <Program name=HART device=None/> }.into_any()
+        })
     };
     view! {
         <div class="page" data-testid="page-traffic">

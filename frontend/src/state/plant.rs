@@ -154,8 +154,8 @@ impl Plant {
     }
 
     fn subscriptions(&self) -> Vec<ToBackend> {
-        self.buses
-            .iter()
+        let known = self.buses.iter().filter(|bus| bus.is_known());
+        known
             .map(|bus| ToBackend::Subscribe {
                 bus: bus.info.name.clone(),
                 after: bus.last_seq,

@@ -5,6 +5,7 @@
 
 pub mod ddc;
 pub mod dop;
+pub mod hart;
 pub mod icon;
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,7 @@ use shared::device::Device;
 use shared::frame::Framing;
 use wasm_bindgen::{JsCast, JsValue};
 
+use super::map::MapView;
 use crate::components::decode_panes::DecodePanes;
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::decode_store::{DecodeStore, Input};
@@ -55,9 +56,42 @@ pub(super) fn DecodePage() -> impl IntoView {
         }
     });
     let on_act = Callback::new(move |_: Act| store.cancel());
+    // The condensed status map needs no input.
+    let map = RwSignal::new(guest.place.with_untracked(|p| p.get("view") == Some("map")));
+    let tabs: Draw = Arc::new(move |html: &mut Markup| {
+        for (act, words, on) in [
+            ("frames", "Frames", !map.get()),
+            ("map", "Condensed status map", map.get()),
+        ] {
+            html.open(
+                "button",
+                &[
+                    ("class", "tab"),
+                    ("role", "tab"),
+                    ("data-act", act),
+                    ("data-testid", "hart-view"),
+                    ("data-view", act),
+                    ("aria-selected", if on { "true" } else { "false" }),
+                ],
+            );
+            html.text(words).close("button");
+        }
+    });
+    let on_tab = Callback::new(move |act: Act| map.set(act.name == "map"));
+    let body = super::part(move || {
+        if map.get() {
+            view! { <div class="hart-page"><MapView unit=None/></div> }.into_any()
+        } else {
+            view! {
+                <Drawn class="hart-found" draw=Arc::clone(&found) on_act=on_act/>
+                <DecodePanes/>
+            }
+            .into_any()
+        }
+    });
     view! {
-        <Drawn class="hart-found" draw=found on_act=on_act/>
-        <DecodePanes/>
+        <Drawn class="tabs" role="tablist" label="HART" draw=tabs on_act=on_tab/>
+        {body}
     }
 }
 

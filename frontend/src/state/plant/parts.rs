@@ -26,6 +26,12 @@ pub struct BusState {
 }
 
 impl BusState {
+    /// False for a bus whose frames only a program of its own can decode.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        Framing::from_key(&self.info.framing).is_some()
+    }
+
     pub(super) fn new(info: Bus) -> Self {
         let framing = Framing::from_key(&info.framing).unwrap_or_default();
         Self {
@@ -78,6 +84,12 @@ impl DeviceState {
     #[must_use]
     pub fn is_ddc(&self) -> bool {
         self.info.kind.starts_with("ddc100")
+    }
+
+    /// True for a device on a HART line, which has a program of its own.
+    #[must_use]
+    pub const fn is_hart(&self) -> bool {
+        self.device.family().is_some()
     }
 
     /// True for a device whose page is drawn by the program of diagnostic objects.

@@ -1,0 +1,223 @@
+//! The condensed status map: of a device, of the manual's examples, of a file.
+
+use std::sync::Arc;
+
+use leptos::prelude::*;
+use leptos::task::spawn_local;
+use shared::device::{Device, Family};
+use shared::hart::PRESETS;
+use shared::hart::ne107::Map;
+use wasm_bindgen::JsCast;
+
+use super::device::tools;
+use crate::browser::save;
+use crate::components::drawn::{Act, Draw, Drawn};
+use crate::components::icon::{Glyph, Icon};
+use crate::hart::markup::map::{matrix, result};
+use crate::hart::state::map::{from_csv, of_device, preset, table, to_csv};
+use crate::hart::state::unit::Unit;
+use crate::hart::store::Store;
+use crate::markup::Markup;
+use crate::markup::control::{Button, Choice};
+use crate::task::promise;
+
+/// A map with where it is from.
+type Named = (String, Map);
+
+/// The map of the device on the line.
+#[component]
+pub(super) fn DeviceMapPage() -> impl IntoView {
+    let store = Store::get();
+    let (draw, on_act) = tools(store);
+    view! {
+        <div class="hart-page" data-testid="hart-map-page">
+            <Drawn class="toolbar" draw=draw on_act=on_act/>
+            <MapView unit=Some(store.unit)/>
+        </div>
+    }
+}
+
+/// The matrix with its sources, without a device or with one.
+#[component]
+pub(super) fn MapView(
+    /// The device.
+    unit: Option<RwSignal<Unit>>,
+) -> impl IntoView {
+    let chosen = RwSignal::new(String::new());
+    let beside = RwSignal::new(String::new());
+    let picked = RwSignal::new(None::<Family>);
+    let file = RwSignal::new(None::<Named>);
+    let problem = RwSignal::new(String::new());
+    let of = move |key: &str| -> Option<Named> {
+        match key {
+            "device" => unit?.with(of_device).map(|m| ("the device".to_owned(), m)),
+            "file" => file.get(),
+            "factory" => Some(("no effect for all".to_owned(), Map::default())),
+            key => preset(key).map(|p| (p.label.to_owned(), Map::of(p))),
+        }
+    };
+    // Unless somebody chose: what the device says, else the first example.
+    let key = move || {
+        let key = chosen.get();
+        match (key.is_empty(), unit.is_some()) {
+            (false, _) => key,
+            (true, true) => "device".to_owned(),
+            (true, false) => PRESETS.first().map_or("", |p| p.key).to_owned(),
+        }
+    };
+    let family = move || {
+        let own = unit.and_then(|u| u.with(|u| u.family));
+        own.or(picked.get())
+            .or_else(|| preset(&key()).map(|p| p.family))
+    };
+    let head: Draw = Arc::new(move |html: &mut Markup| {
+        let presets: Vec<_> = PRESETS
+            .iter()
+            .map(|p| (p.key, format!("{}, {}", p.label, table(p))))
+            .collect();
+        let mut sources: Vec<(&str, String)> = Vec::new();
+        if unit.is_some() {
+            sources.push(("device", "As read from the device".to_owned()));
+        }
+        sources.extend(presets);
+        sources.push(("factory", "As delivered: no effect for all".to_owned()));
+        if let Some((name, _)) = file.get() {
+            sources.push(("file", name));
+        }
+        let pairs = || sources.iter().map(|(k, w)| (*k, w.as_str()));
+        let now = key();
+        Choice {
+            act: "map",
+            testid: "hart-map-source",
+            label: "Map",
+            none: "Choose",
+            value: &now,
+            labelled: true,
+            title: "",
+        }
+        .draw(html, pairs());
+        let now = beside.get();
+        Choice {
+            act: "beside",
+            testid: "hart-map-beside",
+            label: "Compare with",
+            none: "nothing",
+            value: &now,
+            labelled: true,
+            title: "",
+        }
+        .draw(html, pairs());
+        if unit.is_none() {
+            let now = family().map_or("", Family::key);
+            Choice {
+                act: "family",
+                testid: "hart-map-family",
+                label: "Family",
+                none: "Choose",
+                value: now,
+                labelled: true,
+                title: "",
+            }
+            .draw(html, Family::ALL.iter().map(|f| (f.key(), f.label())));
+        }
+        Button {
+            act: "save",
+            testid: "hart-map-save",
+            words: "Save as file",
+            glyph: Some(Glyph::Save),
+            disabled: of(&key()).is_none(),
+            ..Button::default()
+        }
+        .draw(html);
+        if problem.with(|p| !p.is_empty()) {
+            problem.with(|p| html.node("p", "notice", p));
+        }
+    });
+    let body: Draw = Arc::new(move |html: &mut Markup| {
+        let Some((_, map)) = of(&key()) else {
+            html.node("p", "empty", "The map of the device was not read yet.");
+            return;
+        };
+        let beside = of(&beside.get()).map(|(_, m)| m);
+        let family = family();
+        if let (Some(unit), Some(family)) = (unit, family) {
+            let status = unit.with(|u| {
+                let bytes = (0..4).map(|at| u.raw(48, &format!("byte_{at}")));
+                bytes
+                    .map(|b| b.and_then(|b| u8::try_from(b).ok()))
+                    .collect::<Option<Vec<u8>>>()
+            });
+            if let Some(status) = status {
+                result(html, family, &status, &map);
+            }
+        }
+        matrix(html, family, &map, beside.as_ref());
+        for reading in ["R18", "R21"] {
+            if let Some(reading) = shared::hart::reading(reading) {
+                html.open("p", &[("class", "quiet")]);
+                html.node("code", "", reading.id)
+                    .text(" ")
+                    .text(reading.text);
+                html.close("p");
+            }
+        }
+    });
+    let on_act = Callback::new(move |act: Act| match act.name.as_str() {
+        "map" => chosen.set(act.value),
+        "beside" => beside.set(act.value),
+        "family" => picked.set(Device::from_key(&act.value).and_then(Device::family)),
+        _ => {
+            if let Some((_, map)) = untrack(|| of(&key())) {
+                let family = untrack(family);
+                save("valvescope-status-map.csv", &to_csv(family, &map));
+            }
+        }
+    });
+    let on_file = move |event: web_sys::Event| {
+        let Some(chosen_file) = chosen_file(&event) else {
+            return;
+        };
+        spawn_local(async move {
+            let name = chosen_file.name();
+            let text = promise(chosen_file.text())
+                .await
+                .and_then(|t| t.as_string());
+            match text.as_deref().map(from_csv) {
+                Some(Ok(map)) => {
+                    file.set(Some((name, map)));
+                    chosen.set("file".to_owned());
+                    problem.set(String::new());
+                }
+                Some(Err(why)) => problem.set(why),
+                None => problem.set("The file can't be read as text.".to_owned()),
+            }
+        });
+    };
+    view! {
+        <div class="hart-map-view" data-testid="hart-map-view">
+            <Drawn class="toolbar" draw=head on_act=on_act/>
+            <label class="button hart-map-open">
+                <Icon glyph=Glyph::File/>
+                "Open a saved map"
+                <input
+                    type="file"
+                    class="hidden-input"
+                    data-testid="hart-map-file"
+                    on:change=on_file
+                />
+            </label>
+            <Drawn class="hart-map-body" draw=body/>
+        </div>
+    }
+}
+
+/// The file that was chosen in a field, which is emptied so that the same can be chosen again.
+fn chosen_file(event: &web_sys::Event) -> Option<web_sys::File> {
+    let input = event
+        .target()?
+        .dyn_into::<web_sys::HtmlInputElement>()
+        .ok()?;
+    let file = input.files().and_then(|list| list.get(0));
+    input.set_value("");
+    file
+}
