@@ -224,6 +224,21 @@ pub struct DeviceConfig {
     pub profile: Option<Arc<Profile>>,
 }
 
+impl DeviceConfig {
+    /// A device of the first bus with nothing but what it must have.
+    #[must_use]
+    pub fn simple(tag: &str, device: Device, unit: u8) -> Self {
+        Self {
+            tag: tag.to_owned(),
+            device,
+            bus: 0,
+            unit,
+            description: String::new(),
+            profile: None,
+        }
+    }
+}
+
 /// Why a configuration is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {

@@ -193,4 +193,23 @@ impl Plant {
             .filter(|d| d.info.kind == Kind::Dop.key());
         found.filter_map(|d| Some((&self.buses.get(d.bus)?.1, d.at)))
     }
+
+    /// True if the device with this tag is an ICON3000.
+    #[must_use]
+    pub fn is_icon(&self, tag: &str) -> bool {
+        let found = self.devices.iter().find(|d| d.info.tag == tag);
+        found.is_some_and(Device::is_icon)
+    }
+
+    /// The ICON3000 devices: bus, and index on it.
+    pub fn icon_devices(&self) -> impl Iterator<Item = (&Handle, usize)> {
+        let found = self.devices.iter().filter(|d| d.is_icon());
+        found.filter_map(|d| Some((&self.buses.get(d.bus)?.1, d.at)))
+    }
+}
+
+impl Device {
+    fn is_icon(&self) -> bool {
+        Kind::from_key(&self.info.kind).is_some_and(Kind::is_icon)
+    }
 }

@@ -3,7 +3,9 @@
 use super::board::Board;
 use super::dop::DopUnit;
 use super::gate::Gate;
+use super::icon::IconUnit;
 use super::open::{Line, Plug};
+use super::query::Query;
 use super::recorder::Recorder;
 use super::timing::Timing;
 use super::unit::{Ask, Job, Origin, Unit};
@@ -39,7 +41,8 @@ pub fn start(
     let gate = Gate::of(devices);
     let unit = |d: &DeviceConfig| {
         let dop = DopUnit::of(d, &gate);
-        Unit::new(d.tag.clone(), d.unit, board.slot(), d.device.is_icon(), dop)
+        let icon = IconUnit::of(d);
+        Unit::new(d.tag.clone(), d.unit, board.slot(), dop, icon)
     };
     let units = devices.iter().map(unit).collect();
     let actor = Actor {
@@ -139,11 +142,9 @@ impl Actor {
                 .into_iter()
                 .chain(again.and_then(|job| match job.origin {
                     Origin::Once(reply) => Some(reply),
-                    Origin::Watch | Origin::Dop | Origin::Indicators => None,
+                    Origin::Watch | Origin::Dop | Origin::Indicators | Origin::Icon => None,
                 }));
-            if let Some(dop) = &mut unit.dop {
-                dop.down(text);
-            }
+            unit.programs_down(text, self.clock.now());
             replies.for_each(|reply| reply(Report::down(text)));
             if watched {
                 self.state(at, Outcome::Down, text.to_owned());
@@ -166,8 +167,8 @@ impl Actor {
                             _ => None,
                         };
                         self.obey(command);
-                        let objects = self.units.iter_mut().filter_map(|u| u.dop.as_mut());
-                        objects.for_each(|d| d.down(text));
+                        let now = self.clock.now();
+                        self.units.iter_mut().for_each(|u| u.programs_down(text, now));
                         if let Some(device) = watched {
                             self.state(device, Outcome::Down, text.to_owned());
                         }
@@ -250,14 +251,17 @@ impl Actor {
                     dop.ask(client, ask, out);
                 }
             }
-            Command::Leave { client } => {
-                for unit in &mut self.units {
-                    unit.plan.leave(client);
-                    if let Some(dop) = &mut unit.dop {
-                        dop.leave(client);
-                    }
+            Command::Icon {
+                client,
+                device,
+                ask,
+                out,
+            } => {
+                if let Some(icon) = self.units.get_mut(device).and_then(|u| u.icon.as_mut()) {
+                    icon.ask(client, ask, out);
                 }
             }
+            Command::Leave { client } => self.units.iter_mut().for_each(|u| u.leave(client)),
         }
     }
 
@@ -289,7 +293,7 @@ impl Actor {
         let address = unit.address;
         let answer = match resync(line, unit, &mut self.nonce).await {
             Ok(()) => match &job.ask {
-                Ask::Read(read) => line.read(address, *read).await,
+                Ask::Query(query) => line.read(address, query).await,
                 Ask::Dop(permit) => {
                     tracing::debug!("{}: asks for {}", unit.tag, permit.request());
                     line.write(permit).await
@@ -331,10 +335,16 @@ impl Actor {
                 false
             }
             Origin::Watch => {
-                if let Ask::Read(read) = job.ask {
+                if let Ask::Query(Query::Read(read)) = job.ask {
                     unit.plan.done(read, now);
                 }
                 unit.plan.due(now).is_none()
+            }
+            Origin::Icon => {
+                if let (Some(icon), Ask::Query(query)) = (&mut unit.icon, &job.ask) {
+                    icon.reply(query, &report, self.clock.at(now));
+                }
+                false
             }
             Origin::Dop | Origin::Indicators => {
                 let at = self.clock.at(now);

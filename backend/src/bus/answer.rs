@@ -9,6 +9,8 @@ use shared::frame::Framing;
 use shared::frame::check::{crc_holds, lrc};
 use shared::pdu::length::{self, Length};
 
+use super::query::is_answer;
+
 /// What was asked.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'a> {
@@ -103,11 +105,17 @@ fn sound(framing: Framing, bytes: &[u8]) -> Option<(usize, u8, Vec<u8>)> {
             Some((end, unit, pdu_of(line, framing)?))
         }
         Framing::Rtu => {
-            let Length::Exact(len) = length::response(bytes.get(1..)?) else {
+            let pdu = bytes.get(1..)?;
+            let Length::Exact(len) = length::response(pdu) else {
                 return None;
             };
-            let frame = bytes.get(..len + 3)?;
-            crc_holds(frame).then_some(())?;
+            // The report of an ICON3000 is longer than it says.
+            let lengths = [Some(len), length::report(pdu)];
+            let mut frames = lengths
+                .into_iter()
+                .flatten()
+                .map(|len| bytes.get(..len + 3));
+            let frame = frames.find_map(|f| f.filter(|f| crc_holds(f)))?;
             Some((frame.len(), *frame.first()?, pdu_of(frame, framing)?))
         }
         Framing::Tcp | Framing::Hart | Framing::HartIp => None,
@@ -122,19 +130,7 @@ fn answers(asked: &Asked<'_>, pdu: &[u8]) -> bool {
     if *got == function | 0x80 {
         return pdu.len() == 2;
     }
-    if got != function || pdu.len() != asked.response_len {
-        return false;
-    }
-    match function {
-        1..=4 => pdu
-            .get(1)
-            .is_some_and(|count| usize::from(*count) + 2 == pdu.len()),
-        // An echo that differs answers another request.
-        6 | 8 => pdu == asked.pdu,
-        // Address and quantity.
-        16 => asked.pdu.get(..5) == Some(pdu),
-        _ => true,
-    }
+    got == function && is_answer(asked.pdu, asked.response_len, pdu)
 }
 
 /// Whether bytes that are no sound frame look like the beginning of our answer, and whether all of

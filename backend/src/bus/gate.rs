@@ -14,6 +14,7 @@ use shared::frame::ascii::hex_pair;
 use shared::pdu::length::{Length, request};
 use std::sync::Arc;
 
+use super::query::is_counter;
 use crate::config::DeviceConfig;
 
 /// A frame that may not be sent. It never leaves.
@@ -199,15 +200,17 @@ impl Gate {
 
 /// True for PDUs that change nothing in a device.
 ///
-/// Source: Modbus Application Protocol V1.1b3, section 6. Of the diagnostics (08) only the echo is
-/// let through: others clear counters or silence a device. Of the encapsulated interface (43) only
-/// the device identification: what CANopen devices make of the other is their own affair.
+/// Source: Modbus Application Protocol V1.1b3, section 6. Of the diagnostics (08) the echo and the
+/// counters are let through: others clear counters or silence a device. Of the encapsulated
+/// interface (43) only the device identification: what CANopen devices make of the other is their
+/// own affair.
 #[must_use]
 pub fn is_read(pdu: &[u8]) -> bool {
-    matches!(
-        pdu,
-        [1..=4 | 7 | 11 | 12 | 17 | 20 | 24, ..] | [8, 0, 0, ..] | [43, 0x0E, ..]
-    )
+    match pdu {
+        [1..=4 | 7 | 11 | 12 | 17 | 20 | 24, ..] | [8, 0, 0, ..] | [43, 0x0E, ..] => true,
+        [8, high, low, 0, 0] => is_counter(u16::from_be_bytes([*high, *low])),
+        _ => false,
+    }
 }
 
 /// A complete request of every function code: with the length that the standard gives it, and

@@ -7,9 +7,11 @@ pub mod board;
 pub mod ddc;
 mod dop;
 pub mod gate;
+pub mod icon;
 pub mod master;
 mod open;
 mod outlet;
+pub mod query;
 pub mod recorder;
 mod schedule;
 pub mod tap;
@@ -23,7 +25,7 @@ pub use open::Plug;
 pub use outlet::Outlet;
 
 use shared::encode::Read;
-use shared::proto::{DopAsk, Outcome};
+use shared::proto::{DopAsk, IconAsk, Outcome};
 use std::io;
 use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
@@ -65,6 +67,17 @@ pub enum Command {
         device: usize,
         /// What is wanted.
         ask: DopAsk,
+        /// Gets what comes of it.
+        out: Outlet,
+    },
+    /// About what an ICON3000 offers beyond its registers.
+    Icon {
+        /// Who wants it.
+        client: ClientId,
+        /// Index of the device on this bus.
+        device: usize,
+        /// What is wanted.
+        ask: IconAsk,
         /// Gets what comes of it.
         out: Outlet,
     },

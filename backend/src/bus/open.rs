@@ -3,6 +3,7 @@
 use super::alarm::Alarm;
 use super::gate::{DopPermit, Gate};
 use super::master::{Master, Request, Stream};
+use super::query::Query;
 use super::recorder::Recorder;
 use super::tap::Tap;
 use super::tcp::{self, Remote};
@@ -11,7 +12,6 @@ use super::{Answer, Fault};
 use crate::config::{BusConfig, LineConfig};
 use crate::serial;
 use crate::sim::{self, Actuators};
-use shared::encode::Read;
 use std::io;
 use tokio::time::Instant;
 
@@ -79,17 +79,17 @@ impl Line {
     }
 
     /// Reads once.
-    pub async fn read(&mut self, unit: u8, read: Read) -> Result<Answer, Fault> {
+    pub async fn read(&mut self, unit: u8, query: &Query) -> Result<Answer, Fault> {
         match self {
             Self::Serial(master) => {
                 let request = Request {
                     unit,
-                    pdu: &read.pdu(),
-                    response_len: read.response_len(),
+                    pdu: &query.pdu(),
+                    response_len: query.response_len(),
                 };
                 master.exchange(request).await
             }
-            Self::Tcp(remote) => remote.read(unit, read).await,
+            Self::Tcp(remote) => remote.read(unit, query).await,
         }
     }
 

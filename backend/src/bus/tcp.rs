@@ -4,6 +4,7 @@
 //! comes late meets nobody. What the other side sends is checked before the library sees it.
 
 use super::gate::{DopPermit, Gate};
+use super::query::Query;
 use super::recorder::Recorder;
 use super::tap::Tap;
 use super::{Answer, Fault};
@@ -15,6 +16,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::io;
 use std::pin::Pin;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
@@ -33,7 +35,23 @@ pub struct Remote {
     timeout: Duration,
     gate: Gate,
     recorder: Recorder,
+    /// The answer that came last, as it came.
+    last: Last,
     modbus: Option<Modbus>,
+}
+
+/// The bytes of the answer to the last request, for functions that the library does not know.
+#[derive(Clone, Debug, Default)]
+struct Last(Arc<Mutex<Option<Vec<u8>>>>);
+
+impl Last {
+    fn set(&self, pdu: Option<Vec<u8>>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = pdu;
+    }
+
+    fn take(&self) -> Option<Vec<u8>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
 }
 
 impl fmt::Debug for Remote {
@@ -61,9 +79,10 @@ impl Remote {
             timeout,
             gate,
             recorder,
+            last: Last::default(),
             modbus: None,
         };
-        remote.modbus = Some(attach(host, &remote.gate, &remote.recorder).await?);
+        remote.modbus = Some(remote.attached().await?);
         Ok(remote)
     }
 
@@ -71,7 +90,10 @@ impl Remote {
     ///
     /// # Errors
     /// If no answer came, if it was not sound, or if the connection is lost.
-    pub async fn read(&mut self, unit: u8, read: Read) -> Result<Answer, Fault> {
+    pub async fn read(&mut self, unit: u8, query: &Query) -> Result<Answer, Fault> {
+        let Query::Read(read) = *query else {
+            return self.read_other(unit, query).await;
+        };
         let (start, count) = (read.start.get(), read.count());
         let request = match read.table {
             Table::Coil => Request::ReadCoils(start, count),
@@ -82,6 +104,57 @@ impl Remote {
         let function = read.table.read_function();
         self.exchange(unit, function, request, |response| pdu(response, read))
             .await
+    }
+
+    /// Functions of which the library knows nothing, or less than devices say. Their answer is taken
+    /// as it came, from below the library; where it took offence, the connection is opened anew.
+    async fn read_other(&mut self, unit: u8, query: &Query) -> Result<Answer, Fault> {
+        let mut modbus = self.attached().await?;
+        modbus.set_slave(Slave(unit));
+        let bytes = query.pdu();
+        let (function, data) = bytes.split_first().map_or((0, &[][..]), |(f, d)| (*f, d));
+        let sent = Instant::now();
+        let call = modbus.call(Request::Custom(function, Cow::Borrowed(data)));
+        let outcome = timeout(self.timeout, call).await;
+        self.recorder.silence();
+        let latency = sent.elapsed();
+        let came = self.last.take();
+        let pdu = match (outcome, came) {
+            (Ok(Err(tokio_modbus::Error::Transport(error))), _)
+                if error.kind() == io::ErrorKind::PermissionDenied =>
+            {
+                return Err(error.into());
+            }
+            (Ok(outcome), Some(pdu)) => {
+                if outcome.is_ok() {
+                    self.modbus = Some(modbus);
+                }
+                pdu
+            }
+            (Ok(Err(tokio_modbus::Error::Transport(error))), None) => match error.kind() {
+                io::ErrorKind::InvalidData => return Err(Fault::Damaged(error.to_string())),
+                _ => return Err(Fault::Closed),
+            },
+            (Ok(_), None) => {
+                return Err(Fault::Damaged("another request was answered".into()));
+            }
+            (Err(_), _) => return Err(Fault::Silence),
+        };
+        let refused = pdu.len() == 2 && pdu.first() == Some(&(function | 0x80));
+        if refused || query.is_answered_by(&pdu) {
+            return Ok(Answer { pdu, latency });
+        }
+        self.modbus = None;
+        let text = format!("{} bytes came that do not answer the request", pdu.len());
+        Err(Fault::Damaged(text))
+    }
+
+    /// The connection, opened if it is not.
+    async fn attached(&mut self) -> io::Result<Modbus> {
+        match self.modbus.take() {
+            Some(modbus) => Ok(modbus),
+            None => attach(&self.host, &self.gate, &self.recorder, &self.last).await,
+        }
     }
 
     /// Writes the request for a diagnostic object.
@@ -113,10 +186,7 @@ impl Remote {
         request: Request<'_>,
         check: impl Fn(&Response) -> Result<Vec<u8>, Fault>,
     ) -> Result<Answer, Fault> {
-        let mut modbus = match self.modbus.take() {
-            Some(modbus) => modbus,
-            None => attach(&self.host, &self.gate, &self.recorder).await?,
-        };
+        let mut modbus = self.attached().await?;
         modbus.set_slave(Slave(unit));
         let sent = Instant::now();
         let outcome = timeout(self.timeout, modbus.call(request)).await;
@@ -146,10 +216,10 @@ impl Remote {
 }
 
 /// Opens a connection that is recorded and checked.
-async fn attach(host: &str, gate: &Gate, recorder: &Recorder) -> io::Result<Modbus> {
+async fn attach(host: &str, gate: &Gate, recorder: &Recorder, last: &Last) -> io::Result<Modbus> {
     let stream = connect(host).await?;
     let tap = Tap::new(stream, Framing::Tcp, gate.clone(), recorder.clone());
-    Ok(tcp::attach(Checked::new(tap)))
+    Ok(tcp::attach(Checked::new(tap, last.clone())))
 }
 
 /// Opens a connection without delay for small frames.
@@ -204,15 +274,20 @@ struct Checked<T> {
     /// A checked frame, and how much of it was handed on.
     good: Vec<u8>,
     given: usize,
+    /// Transaction and unit of the last request.
+    asked: [u8; 3],
+    last: Last,
 }
 
 impl<T> Checked<T> {
-    const fn new(inner: T) -> Self {
+    const fn new(inner: T, last: Last) -> Self {
         Self {
             inner,
             frame: Vec::new(),
             good: Vec::new(),
             given: 0,
+            asked: [0; 3],
+            last,
         }
     }
 
@@ -225,7 +300,7 @@ impl<T> Checked<T> {
         let Some(header) = self.frame.first_chunk::<7>() else {
             return Ok(false);
         };
-        let &[_, _, p0, p1, l0, l1, _] = header;
+        let &[t0, t1, p0, p1, l0, l1, unit] = header;
         if (p0, p1) != (0, 0) {
             return bad("a frame that is not Modbus: its protocol number is not 0");
         }
@@ -237,8 +312,12 @@ impl<T> Checked<T> {
         let Some(pdu) = self.frame.get(7..len) else {
             return Ok(false);
         };
-        if length::response(pdu) != Length::Exact(pdu.len()) {
+        let long = length::report(pdu) == Some(pdu.len());
+        if !long && length::response(pdu) != Length::Exact(pdu.len()) {
             return bad("a response whose length and content do not agree");
+        }
+        if self.asked == [t0, t1, unit] {
+            self.last.set(Some(pdu.to_vec()));
         }
         let rest = self.frame.split_off(len);
         self.good = std::mem::replace(&mut self.frame, rest);
@@ -284,6 +363,11 @@ impl<T: AsyncWrite + Unpin> AsyncWrite for Checked<T> {
         // What an earlier request left behind answers nothing.
         self.frame.clear();
         self.good.clear();
+        // The library hands over whole frames.
+        if let &[t0, t1, 0, 0, _, _, unit, ..] = bytes {
+            self.asked = [t0, t1, unit];
+            self.last.set(None);
+        }
         Pin::new(&mut self.inner).poll_write(cx, bytes)
     }
 

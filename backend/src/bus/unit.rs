@@ -3,8 +3,10 @@
 
 use super::dop::{DopUnit, Step, until};
 use super::gate::DopPermit;
+use super::icon::IconUnit;
+use super::query::Query;
 use super::schedule::Plan;
-use super::{Fault, Reply};
+use super::{ClientId, Fault, Reply};
 use crate::clock::Clock;
 use shared::capture::Micros;
 use shared::encode::Read;
@@ -28,13 +30,15 @@ pub enum Origin {
     Dop,
     /// A watch of the user indicators.
     Indicators,
+    /// Files, identity or counters of an ICON3000.
+    Icon,
 }
 
 /// What is asked of a device.
 #[derive(Debug)]
 pub enum Ask {
     /// A read.
-    Read(Read),
+    Query(Query),
     /// The request for a diagnostic object.
     Dop(DopPermit),
 }
@@ -44,7 +48,7 @@ impl Ask {
     #[must_use]
     pub fn response_len(&self) -> usize {
         match self {
-            Self::Read(read) => read.response_len(),
+            Self::Query(query) => query.response_len(),
             Self::Dop(permit) => permit.response_len(),
         }
     }
@@ -91,8 +95,10 @@ pub struct Unit {
     pub again: Option<Job>,
     /// Its diagnostic objects, if it has any.
     pub dop: Option<DopUnit>,
-    /// The last thing done was for a diagnostic object: a watch goes first now.
-    dop_was_last: bool,
+    /// What is read of it beyond its registers, if it is an ICON3000.
+    pub icon: Option<IconUnit>,
+    /// The last thing done was for a program of a page: a watch goes first now.
+    program_was_last: bool,
     /// When a request was given up whose answer may still come, and how long that may take.
     pub open: Option<(Instant, Duration)>,
     /// The next answer is to be trusted only after an echo.
@@ -113,17 +119,25 @@ pub struct Unit {
 impl Unit {
     /// A device of which nothing is known.
     #[must_use]
-    pub fn new(tag: String, address: u8, slot: usize, echo: bool, dop: Option<DopUnit>) -> Self {
+    pub fn new(
+        tag: String,
+        address: u8,
+        slot: usize,
+        dop: Option<DopUnit>,
+        icon: Option<IconUnit>,
+    ) -> Self {
         Self {
             tag,
             address,
             slot,
-            echo,
+            // Of the devices here, the ICON3000 has the function.
+            echo: icon.is_some(),
             plan: Plan::default(),
             once: VecDeque::new(),
             again: None,
             dop,
-            dop_was_last: false,
+            icon,
+            program_was_last: false,
             open: None,
             resync: false,
             hold: None,
@@ -166,10 +180,8 @@ impl Unit {
             };
             let watched = due.map(|due| due.max(self.hold));
             let objects = self.dop_due(now, clock).map(Some);
-            match (watched, objects) {
-                (Some(watched), Some(objects)) => Some(watched.min(objects)),
-                (one, other) => one.or(other),
-            }
+            let files = self.icon.as_ref().and_then(|i| i.due(now)).map(Some);
+            [watched, objects, files].into_iter().flatten().min()
         };
         let due = due?;
         Some(due.max(self.released(stray)).unwrap_or(now))
@@ -193,34 +205,61 @@ impl Unit {
             }
         }
         if let Some((read, reply)) = self.once.pop_front() {
-            return Some(Job::new(Ask::Read(read), retries, Origin::Once(reply)));
+            let ask = Ask::Query(read.into());
+            return Some(Job::new(ask, retries, Origin::Once(reply)));
         }
-        // Watches and diagnostic objects take turns.
+        // Watches and what programs of a page ask for take turns.
         let watch = self
             .plan
             .due(now)
             .filter(|_| self.hold.is_none_or(|hold| hold <= now));
-        if watch.is_none() || !self.dop_was_last {
-            let step = self.dop.as_mut().and_then(|d| d.take(clock.at(now)));
-            self.dop_was_last = step.is_some();
-            match step {
-                // The handshake itself knows whether a write may be repeated.
-                Some(Step::Write(permit)) => {
-                    return Some(Job::new(Ask::Dop(permit), 0, Origin::Dop));
-                }
-                Some(Step::Read(read)) => {
-                    return Some(Job::new(Ask::Read(read), retries, Origin::Dop));
-                }
-                Some(Step::Indicators(read)) => {
-                    return Some(Job::new(Ask::Read(read), 0, Origin::Indicators));
-                }
-                None => {}
+        if watch.is_none() || !self.program_was_last {
+            let job = self.program(retries, now, clock);
+            self.program_was_last = job.is_some();
+            if job.is_some() {
+                return job;
             }
         }
-        self.dop_was_last = false;
+        self.program_was_last = false;
         // A device known to be silent is tried, not pressed.
         let retries = if self.silences > 0 { 0 } else { retries };
-        Some(Job::new(Ask::Read(watch?), retries, Origin::Watch))
+        let ask = Ask::Query(watch?.into());
+        Some(Job::new(ask, retries, Origin::Watch))
+    }
+
+    /// Takes the next thing that a program of a page asked for.
+    fn program(&mut self, retries: u8, now: Instant, clock: Clock) -> Option<Job> {
+        if let Some(query) = self.icon.as_mut().and_then(IconUnit::take) {
+            return Some(Job::new(Ask::Query(query), retries, Origin::Icon));
+        }
+        let job = match self.dop.as_mut()?.take(clock.at(now))? {
+            // The handshake itself knows whether a write may be repeated.
+            Step::Write(permit) => Job::new(Ask::Dop(permit), 0, Origin::Dop),
+            Step::Read(read) => Job::new(Ask::Query(read.into()), retries, Origin::Dop),
+            Step::Indicators(read) => Job::new(Ask::Query(read.into()), 0, Origin::Indicators),
+        };
+        Some(job)
+    }
+
+    /// A page is gone.
+    pub fn leave(&mut self, client: ClientId) {
+        self.plan.leave(client);
+        if let Some(dop) = &mut self.dop {
+            dop.leave(client);
+        }
+        if let Some(icon) = &mut self.icon {
+            icon.leave(client);
+        }
+    }
+
+    /// The line is down: what programs of a page wait for will not come.
+    pub fn programs_down(&mut self, text: &str, at: Micros) {
+        if let Some(dop) = &mut self.dop {
+            dop.down(text);
+        }
+        if let Some(icon) = &mut self.icon {
+            icon.down(text, at);
+        }
     }
 
     /// Notes a fault; an answer that may still come makes the device wait for `quarantine`.

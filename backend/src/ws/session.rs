@@ -5,6 +5,7 @@
 
 mod ddc;
 mod dop;
+mod icon;
 
 use crate::bus::board::Board;
 use crate::bus::recorder::{Recorder, encode};
@@ -292,7 +293,8 @@ impl Page<'_> {
             } => self.watch(&device, &blocks, period_ms).await,
             ToBackend::Dop(ask) => self.dop(ask).await,
             ToBackend::Ddc(ask) => return self.ddc(ask).await,
-            ToBackend::Hart(_) | ToBackend::Icon(_) => Some(ToPage::Refused {
+            ToBackend::Icon(ask) => self.icon(ask).await,
+            ToBackend::Hart(_) => Some(ToPage::Refused {
                 text: "This program does not serve that yet.".into(),
             }),
         };

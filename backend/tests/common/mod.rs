@@ -7,7 +7,7 @@ use backend::listen::Limited;
 use backend::plant::Plant;
 use backend::ws::Hosts;
 use futures_util::{SinkExt, StreamExt};
-use shared::proto::{DdcNews, DopNews, ToBackend, ToPage, VERSION};
+use shared::proto::{DdcNews, DopNews, IconNews, PROGRAM_PREFIXES, ToBackend, ToPage, VERSION};
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -48,10 +48,8 @@ pub async fn get(address: SocketAddr, path: &str, headers: &str) -> (String, Vec
 /// A page.
 pub struct Page {
     socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
-    /// News about diagnostic objects that nobody has looked at yet.
-    news: VecDeque<DopNews>,
-    /// News about DDC-100 networks that nobody has looked at yet.
-    ddc: VecDeque<DdcNews>,
+    /// News for programs that nobody has looked at yet.
+    news: VecDeque<String>,
 }
 
 impl Page {
@@ -68,7 +66,6 @@ impl Page {
         Ok(Self {
             socket,
             news: VecDeque::new(),
-            ddc: VecDeque::new(),
         })
     }
 
@@ -97,15 +94,10 @@ impl Page {
         loop {
             let next = timeout(WAIT, self.socket.next()).await.expect("a message");
             match next {
-                Some(Ok(Message::Text(text))) => {
-                    if let Some(news) = DopNews::from_text(&text) {
-                        self.news.push_back(news);
-                    } else if let Some(news) = DdcNews::from_text(&text) {
-                        self.ddc.push_back(news);
-                    } else {
-                        return Some(serde_json::from_str(&text).unwrap());
-                    }
+                Some(Ok(Message::Text(text))) if is_news(&text) => {
+                    self.news.push_back(text.to_string());
                 }
+                Some(Ok(Message::Text(text))) => return Some(serde_json::from_str(&text).unwrap()),
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return None,
                 Some(Ok(_)) => {}
             }
@@ -127,13 +119,27 @@ impl Page {
 
     /// The next news about diagnostic objects.
     pub async fn news(&mut self) -> DopNews {
+        self.next_news(DopNews::from_text).await
+    }
+
+    /// The next news about an ICON3000.
+    pub async fn icon_news(&mut self) -> IconNews {
+        self.next_news(IconNews::from_text).await
+    }
+
+    /// The next news of a kind; others are passed over.
+    pub async fn next_news<T>(&mut self, read: impl Fn(&str) -> Option<T>) -> T {
         loop {
-            if let Some(news) = self.news.pop_front() {
-                return news;
+            while let Some(text) = self.news.pop_front() {
+                if let Some(news) = read(&text) {
+                    return news;
+                }
             }
             let next = timeout(WAIT, self.socket.next()).await.expect("news");
-            if let Some(Ok(Message::Text(text))) = next {
-                self.news.extend(DopNews::from_text(&text));
+            if let Some(Ok(Message::Text(text))) = next
+                && is_news(&text)
+            {
+                self.news.push_back(text.to_string());
             }
         }
     }
@@ -142,17 +148,16 @@ impl Page {
     pub async fn ddc<T>(&mut self, mut find: impl FnMut(DdcNews) -> Option<T>) -> T {
         let search = async {
             loop {
-                while let Some(news) = self.ddc.pop_front() {
-                    if let Some(found) = find(news) {
-                        return found;
-                    }
-                }
-                let next = self.socket.next().await.expect("the backend closed");
-                if let Ok(Message::Text(text)) = next {
-                    self.ddc.extend(DdcNews::from_text(&text));
+                let news = self.next_news(DdcNews::from_text).await;
+                if let Some(found) = find(news) {
+                    return found;
                 }
             }
         };
         timeout(WAIT, search).await.expect("what is looked for")
     }
+}
+
+fn is_news(text: &str) -> bool {
+    PROGRAM_PREFIXES.iter().any(|p| text.starts_with(p))
 }

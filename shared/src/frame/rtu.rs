@@ -60,14 +60,10 @@ fn candidates(bytes: &[u8]) -> [Option<Candidate>; 3] {
     };
     let request = exact(length::request(pdu), Role::Request);
     let response = exact(length::response(pdu), answer);
-    // Reading E63: this device's report counts 82 bytes where 84 follow.
-    let long = match (pdu.first(), pdu.get(1)) {
-        (Some(17), Some(0x52)) => Some(Candidate {
-            len: 89,
-            role: Role::Response,
-        }),
-        _ => None,
-    };
+    let long = length::report(pdu).map(|len| Candidate {
+        len: len.saturating_add(3),
+        role: Role::Response,
+    });
     [request, response, long]
 }
 

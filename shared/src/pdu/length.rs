@@ -95,6 +95,16 @@ pub fn response(pdu: &[u8]) -> Length {
     }
 }
 
+/// The other length of a response: the report (FC 17) of an ICON3000 counts 82 bytes where 84
+/// follow (reading E63).
+#[must_use]
+pub const fn report(pdu: &[u8]) -> Option<usize> {
+    match pdu {
+        [17, 0x52, ..] => Some(86),
+        _ => None,
+    }
+}
+
 /// Function 08: a sub-function and one word of data; only "return query data" may have more.
 fn diagnostics(pdu: &[u8]) -> Length {
     match pdu.get(1..3) {

@@ -62,7 +62,8 @@ impl Actor {
         line.busy_until(quiet);
         let stray = line.stray();
         let (result, lost) = {
-            let work = pin!(line.read(address, read));
+            let query = read.into();
+            let work = pin!(line.read(address, &query));
             beside(work, other).await
         };
         let now = Instant::now();

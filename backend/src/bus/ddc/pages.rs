@@ -64,8 +64,8 @@ impl Actor {
                     }
                 }
             }
-            // No unit of a network has diagnostic objects.
-            Command::Dop { .. } => {}
+            // No unit of a network has diagnostic objects, or the files of an ICON3000.
+            Command::Dop { .. } | Command::Icon { .. } => {}
             Command::Leave { client } => {
                 for unit in &mut self.units {
                     unit.plan.leave(client);

@@ -1,0 +1,338 @@
+//! What is read of one ICON3000 beyond its registers: files, identity, counters.
+//!
+//! Reads of all pages stand in one queue. Steps that read files and follow each other share
+//! requests, as many groups in each as fit; if the device refuses such a request, its groups are
+//! asked for one by one, for it may be one of them only.
+
+#[cfg(test)]
+mod tests;
+
+use super::query::{Query, is_counter};
+use super::{ClientId, Outlet, Report};
+use crate::config::DeviceConfig;
+use shared::capture::Micros;
+use shared::icon3000::{FileRead, Span, plan};
+use shared::proto::{IconAsk, IconNews, IconStep, Outcome};
+use shared::render::hex;
+use std::collections::VecDeque;
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// Reads that may wait for one device.
+const MAX_JOBS: usize = 64;
+/// After so many requests in a row without any answer the others are given up.
+const SILENT: u8 = 2;
+/// How long a page that takes nothing is waited for before it is looked at again.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// A request and the step that it belongs to; of several, the first.
+#[derive(Debug)]
+struct Part {
+    step: u32,
+    query: Query,
+}
+
+/// One message of a page.
+#[derive(Debug)]
+struct Job {
+    client: ClientId,
+    id: u32,
+    out: Outlet,
+    /// The first is under way if [`IconUnit::under_way`] says so.
+    parts: VecDeque<Part>,
+    total: u32,
+    ok: u32,
+    failed: u32,
+    /// Requests in a row for which the device did not answer at all.
+    silent: u8,
+}
+
+/// The reads of one ICON3000.
+#[derive(Debug)]
+pub struct IconUnit {
+    tag: String,
+    jobs: VecDeque<Job>,
+    /// The first part of the first job was sent and is not answered yet.
+    under_way: bool,
+}
+
+impl IconUnit {
+    /// The unit of a device; `None` if it is no ICON3000.
+    #[must_use]
+    pub fn of(device: &DeviceConfig) -> Option<Self> {
+        device.device.is_icon().then(|| Self {
+            tag: device.tag.clone(),
+            jobs: VecDeque::new(),
+            under_way: false,
+        })
+    }
+
+    /// Does what a page asks.
+    pub fn ask(&mut self, client: ClientId, ask: IconAsk, out: Outlet) {
+        match ask {
+            IconAsk::Cancel { id } => self.cancel(|job| job.client == client && job.id == id),
+            IconAsk::Read { id, steps, .. } => {
+                let full = self.jobs.len() >= MAX_JOBS;
+                let mut job = Job {
+                    client,
+                    id,
+                    out,
+                    parts: VecDeque::new(),
+                    total: 0,
+                    ok: 0,
+                    failed: 0,
+                    silent: 0,
+                };
+                match parts(&steps) {
+                    Ok(parts) if !full => {
+                        job.total = u32::try_from(parts.len()).unwrap_or(u32::MAX);
+                        job.parts = parts;
+                    }
+                    Ok(_) => {
+                        let text = "too much is waiting for this device; try again later";
+                        job.refuse(&self.tag, 0, text);
+                    }
+                    Err(step) => {
+                        let text = "this can't be read: a count is 0 or too large, or the \
+                                    function is none that reads";
+                        job.refuse(&self.tag, step, text);
+                    }
+                }
+                if full {
+                    job.finish(&self.tag);
+                } else {
+                    self.jobs.push_back(job);
+                }
+            }
+        }
+        self.settle();
+    }
+
+    /// A page is gone. What is under way on the line comes to its end.
+    pub fn leave(&mut self, client: ClientId) {
+        self.cancel(|job| job.client == client);
+        self.settle();
+    }
+
+    fn cancel(&mut self, mut which: impl FnMut(&Job) -> bool) {
+        for (at, job) in self.jobs.iter_mut().enumerate() {
+            if which(job) {
+                let kept = usize::from(self.under_way && at == 0);
+                job.parts.truncate(kept);
+            }
+        }
+    }
+
+    /// When there will be something to do; `None` if nothing is asked for.
+    #[must_use]
+    pub fn due(&self, now: Instant) -> Option<Instant> {
+        let job = self.jobs.front()?;
+        let ready = job.out.has_room();
+        Some(if ready { now } else { now + PAUSE })
+    }
+
+    /// Takes the next thing to send.
+    pub fn take(&mut self) -> Option<Query> {
+        let job = self.jobs.front().filter(|job| job.out.has_room())?;
+        let part = job.parts.front()?;
+        self.under_way = true;
+        Some(part.query.clone())
+    }
+
+    /// What came of it.
+    pub fn reply(&mut self, query: &Query, report: &Report, at: Micros) {
+        self.under_way = false;
+        let Some(job) = self.jobs.front_mut() else {
+            return;
+        };
+        if let Some(part) = job.parts.pop_front() {
+            job.answered(&self.tag, &part, query, report, at);
+        }
+        self.settle();
+    }
+
+    /// The line is down: nothing that was asked for can be had.
+    pub fn down(&mut self, text: &str, at: Micros) {
+        self.under_way = false;
+        for mut job in self.jobs.drain(..) {
+            job.give_up(&self.tag, Outcome::Down, text, at);
+            job.finish(&self.tag);
+        }
+    }
+
+    /// Ends the jobs that have nothing left to do.
+    fn settle(&mut self) {
+        let tag = &self.tag;
+        self.jobs.retain(|job| {
+            if job.parts.is_empty() {
+                job.finish(tag);
+            }
+            !job.parts.is_empty()
+        });
+    }
+}
+
+impl Job {
+    fn answered(&mut self, tag: &str, part: &Part, query: &Query, report: &Report, at: Micros) {
+        let request = query.pdu();
+        let response = match (&report.pdu, report.code) {
+            (Some(pdu), _) => hex(pdu),
+            (None, Some(code)) => hex(&[request.first().copied().unwrap_or(0) | 0x80, code]),
+            (None, None) => String::new(),
+        };
+        let one_of_several = match query {
+            Query::File(file) if report.code.is_some() && file.spans().len() > 1 => file.split(),
+            _ => Vec::new(),
+        };
+        self.silent = match report.outcome {
+            Outcome::Silence => self.silent.saturating_add(1),
+            _ => 0,
+        };
+        if one_of_several.is_empty() {
+            match report.outcome {
+                Outcome::Ok => self.ok = self.ok.saturating_add(1),
+                _ => self.failed = self.failed.saturating_add(1),
+            }
+            self.out.send(IconNews::Exchange {
+                id: self.id,
+                device: tag.to_owned(),
+                step: part.step,
+                request: hex(&request),
+                response,
+                outcome: report.outcome,
+                text: report.text.clone(),
+                at_us: at.get(),
+            });
+        } else {
+            let more = u32::try_from(one_of_several.len()).unwrap_or(0);
+            self.total = self.total.saturating_add(more).saturating_sub(1);
+            for file in one_of_several.into_iter().rev() {
+                let query = Query::File(file);
+                let step = part.step;
+                self.parts.push_front(Part { step, query });
+            }
+        }
+        if self.silent >= SILENT && !self.parts.is_empty() {
+            let text = "not asked for, since the device does not answer";
+            self.give_up(tag, Outcome::Silence, text, at);
+        }
+        self.out.say(IconNews::Progress {
+            id: self.id,
+            device: tag.to_owned(),
+            done: self.ok.saturating_add(self.failed),
+            total: self.total,
+            text: self.parts.front().map_or_else(String::new, Part::words),
+        });
+    }
+
+    /// What is left will not be asked for; one message says it for all.
+    fn give_up(&mut self, tag: &str, outcome: Outcome, text: &str, at: Micros) {
+        let left = u32::try_from(self.parts.len()).unwrap_or(u32::MAX);
+        self.failed = self.failed.saturating_add(left);
+        if let Some(part) = self.parts.front() {
+            self.out.send(IconNews::Exchange {
+                id: self.id,
+                device: tag.to_owned(),
+                step: part.step,
+                request: hex(&part.query.pdu()),
+                response: String::new(),
+                outcome,
+                text: text.to_owned(),
+                at_us: at.get(),
+            });
+        }
+        self.parts.clear();
+    }
+
+    fn refuse(&mut self, tag: &str, step: u32, text: &str) {
+        self.failed = 1;
+        self.out.send(IconNews::Exchange {
+            id: self.id,
+            device: tag.to_owned(),
+            step,
+            request: String::new(),
+            response: String::new(),
+            outcome: Outcome::Refused,
+            text: text.to_owned(),
+            at_us: 0,
+        });
+    }
+
+    fn finish(&self, tag: &str) {
+        self.out.send(IconNews::Done {
+            id: self.id,
+            device: tag.to_owned(),
+            ok: self.ok,
+            failed: self.failed,
+        });
+    }
+}
+
+impl Part {
+    /// What is asked, for people.
+    fn words(&self) -> String {
+        match &self.query {
+            Query::Read(read) => {
+                let (first, count) = (read.start.get(), read.count());
+                format!("{count} from address {first}")
+            }
+            Query::File(file) => file.spans().first().map_or_else(String::new, |span| {
+                let more = if file.spans().len() > 1 {
+                    " and more"
+                } else {
+                    ""
+                };
+                format!("file {}, record {}{more}", span.file, span.start)
+            }),
+            Query::Identity => "identity".to_owned(),
+            Query::Diagnostic(sub) => format!("counter {sub}"),
+        }
+    }
+}
+
+/// The requests that steps take; an error is the index of a step that can't be read.
+fn parts(steps: &[IconStep]) -> Result<VecDeque<Part>, u32> {
+    let mut parts = VecDeque::new();
+    let mut files: Vec<(u32, Span)> = Vec::new();
+    for (step, what) in (0_u32..).zip(steps) {
+        let query = match *what {
+            IconStep::File { file, start, count } => {
+                let legal = u32::from(start) + u32::from(count) <= 10_000;
+                if count == 0 || !legal {
+                    return Err(step);
+                }
+                files.push((step, Span::new(file, start, count)));
+                continue;
+            }
+            IconStep::Block(block) => Query::Read(block.read().ok_or(step)?),
+            IconStep::Identity => Query::Identity,
+            IconStep::Diagnostic { sub_function } if is_counter(sub_function) => {
+                Query::Diagnostic(sub_function)
+            }
+            IconStep::Diagnostic { .. } => return Err(step),
+        };
+        parts.extend(file_parts(&files));
+        files.clear();
+        parts.push_back(Part { step, query });
+    }
+    parts.extend(file_parts(&files));
+    Ok(parts)
+}
+
+/// Requests for stretches of files, each with the step of its first group.
+fn file_parts(files: &[(u32, Span)]) -> Vec<Part> {
+    let step_of = |read: &FileRead| {
+        let first = read.spans().first()?;
+        let holds = |s: &Span| {
+            s.file == first.file && s.start <= first.start && u32::from(first.start) < s.end()
+        };
+        files.iter().find(|(_, s)| holds(s)).map(|(step, _)| *step)
+    };
+    plan::plan(files.iter().map(|(_, span)| *span))
+        .into_iter()
+        .map(|read| Part {
+            step: step_of(&read).unwrap_or(0),
+            query: Query::File(read),
+        })
+        .collect()
+}
