@@ -5,10 +5,12 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use leptos::prelude::*;
+use shared::ddc100::tags::TagList;
 use shared::proto::{Block, DdcAsk, DdcNews, DeviceInfo, ToPage};
 
 use super::state::net::Net;
 use super::state::tags::Tags;
+use super::state::unit::Judged;
 use crate::browser::{remember, remembered};
 use crate::erased::{effect, memo};
 use crate::format::{decode, encode};
@@ -36,6 +38,10 @@ pub struct Store {
     pub net: RwSignal<Net>,
     /// What the browser knows of its units.
     pub tags: RwSignal<Tags>,
+    /// The tag list that was imported last.
+    pub list: RwSignal<TagList>,
+    /// All its units with what they say, and how they are.
+    pub judged: Memo<Vec<Judged>>,
     /// The unit that is being polled, and on which port.
     pub poll: RwSignal<Option<(u8, u8)>>,
     /// The unit that is chosen in the drawing, by its place.
@@ -64,6 +70,10 @@ impl Store {
                 found.map_or_else(String::new, |d| d.bus.clone())
             })
         });
+        let (net, tags) = (
+            RwSignal::new(Net::default()),
+            RwSignal::new(Tags::default()),
+        );
         let store = Self {
             guest,
             tag,
@@ -71,8 +81,10 @@ impl Store {
             tab: memo(move || path.with(|path| tab_of(path))),
             online: memo(move || place.with(|p| p.online)),
             devices,
-            net: RwSignal::new(Net::default()),
-            tags: RwSignal::new(Tags::default()),
+            net,
+            tags,
+            list: RwSignal::new(TagList::default()),
+            judged: memo(move || net.with(|net| tags.with(|tags| Judged::all(net, tags)))),
             poll: RwSignal::new(None),
             chosen: RwSignal::new(None),
             now_us: RwSignal::new(guest.now_us()),
@@ -154,6 +166,10 @@ impl Store {
                 store.chosen.set(None);
                 let kept = remembered(&kept_key(&bus)).unwrap_or_default();
                 store.tags.set(Tags::from_text(&kept));
+                let list = remembered(&list_key(&bus)).filter(|text| !text.is_empty());
+                store
+                    .list
+                    .set(list.map(|csv| TagList::read(&csv)).unwrap_or_default());
             }
             store.poll.set(None);
             if online && !bus.is_empty() {
@@ -231,6 +247,22 @@ impl Store {
         remember(&kept_key(&bus), &tags.to_text());
         self.tags.set(tags);
     }
+
+    /// Keeps the tag list that was imported.
+    pub fn set_list(self, list: &TagList) {
+        let bus = self.bus.get_untracked();
+        let text = if list.tags.is_empty() {
+            String::new()
+        } else {
+            list.to_csv()
+        };
+        remember(&list_key(&bus), &text);
+        self.list.set(list.clone());
+    }
+}
+
+fn list_key(bus: &str) -> String {
+    format!("ddc.list.{bus}")
 }
 
 /// The bus that an address names: `Loop%201/tags`.

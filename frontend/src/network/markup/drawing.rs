@@ -6,7 +6,7 @@ use super::{label, sign_at};
 use crate::components::ne107::Sign;
 use crate::markup::Markup;
 use crate::network::state::cable::Stretch;
-use crate::network::state::geometry::{DROP, HOST_RIGHT, Layout, WIDTH, layout};
+use crate::network::state::geometry::{DROP, Layout, WIDTH, layout};
 use crate::network::state::net::Reach;
 use crate::network::state::picture::{Node, Picture};
 
@@ -54,18 +54,65 @@ pub fn drawing(html: &mut Markup, picture: &Picture, chosen: Option<usize>) {
             ],
         );
         sign_at(html, sign, *place);
-        // Beside a turn of the cable, above a straight stretch.
-        let straight = lay.units.iter().any(|u| u.1 == place.1) || place.0 <= HOST_RIGHT + 40;
-        let text = if straight {
-            (place.0, place.1 - 15)
-        } else {
-            (place.0, place.1 + 24)
-        };
+        // Inside a turn of the cable, above a straight stretch; without room the letter alone.
+        let [from_end, to_end] = ends_of(mark.at(), &lay);
         let words = format!("{word} {}", sign.letter());
-        label(html, "break-text", text, &words);
+        if from_end.1 != to_end.1 {
+            let (class, x) = if place.0 < WIDTH / 2 {
+                ("break-text start", place.0 + 14)
+            } else {
+                ("break-text end", place.0 - 14)
+            };
+            label(html, class, (x, place.1 + 4), &words);
+        } else if (from_end.0 - to_end.0).abs() < 72 {
+            label(html, "break-text", (place.0, place.1 - 13), sign.letter());
+        } else {
+            label(html, "break-text", (place.0, place.1 - 15), &words);
+        }
         html.close("g");
     }
     html.close("svg");
+}
+
+/// The ends of a stretch of the cable.
+fn ends_of(stretch: usize, lay: &Layout) -> [(i32, i32); 2] {
+    let from = stretch.checked_sub(1).and_then(|at| lay.units.get(at));
+    [
+        from.copied().unwrap_or(lay.ports[0]),
+        lay.units.get(stretch).copied().unwrap_or(lay.ports[1]),
+    ]
+}
+
+/// What the lines of the cable mean, where there are two kinds.
+pub fn legend(html: &mut Markup, picture: &Picture) {
+    if picture.ports.len() < 2 || picture.stretches.iter().all(|s| *s == Stretch::Good) {
+        return;
+    }
+    for (class, words) in [
+        ("good", "the signal of both ports passes"),
+        ("one", "of one port only"),
+        ("dead", "of none"),
+    ] {
+        html.open("span", &[("class", "legend")]);
+        html.open(
+            "svg",
+            &[
+                ("class", "ring legend-line"),
+                ("viewBox", "0 0 30 8"),
+                ("aria-hidden", "true"),
+            ],
+        );
+        let kind = format!("cable {class}");
+        let mut paths = vec![kind.as_str()];
+        if class == "good" {
+            paths.push("cable core");
+        }
+        for class in paths {
+            html.open("path", &[("class", class), ("d", "M0 4H30")])
+                .close("path");
+        }
+        html.close("svg").text(words).close("span");
+    }
 }
 
 /// The cable, stretches of one kind in one path.
@@ -89,7 +136,11 @@ fn cables(html: &mut Markup, picture: &Picture, lay: &Layout) {
         if path.is_empty() {
             continue;
         }
-        html.open("path", &[("class", kind.class()), ("d", &path)])
+        let class = match kind {
+            Stretch::Good if !twin => "cable one",
+            kind => kind.class(),
+        };
+        html.open("path", &[("class", class), ("d", &path)])
             .close("path");
         // Two lines where the signal of both ports passes.
         if kind == Stretch::Good && twin {
@@ -248,7 +299,13 @@ fn unit(
     if let Some(sign) = node.health.sign() {
         sign_at(html, sign, (x, middle));
         if !sign.letter().is_empty() {
-            label(html, "letter", (x, middle - 13), sign.letter());
+            // On a multi-drop line the trunk runs above.
+            let beside = if hangs {
+                (x + 15, middle + 4)
+            } else {
+                (x, middle - 13)
+            };
+            label(html, "letter", beside, sign.letter());
         }
     }
     label(html, "number", (x, middle + 23), &number);
@@ -322,6 +379,9 @@ mod tests {
         assert!(html.contains("data-kind=\"certain\" data-from=\"3\" data-to=\"3\""));
         assert_eq!(html.matches("cable broken").count(), 1);
         assert!(html.contains("break F"), "colour, shape and letter");
+        let mut lines = Markup::new();
+        legend(&mut lines, &broken());
+        assert_eq!(lines.finish().matches("legend-line").count(), 3);
         assert!(html.contains("aria-activedescendant=\"node-3\""));
         assert_eq!(html.matches("aria-selected=\"true\"").count(), 1);
         assert!(!html.contains("style="));
@@ -334,6 +394,9 @@ mod tests {
         let html = drawn(&good);
         assert_eq!(html.matches("data-testid=\"node\"").count(), 250);
         assert_eq!(html.matches("class=\"cable").count(), 2, "one path, twice");
+        let mut none = Markup::new();
+        legend(&mut none, &good);
+        assert_eq!(none.finish(), "");
         assert!(!html.contains("sign-"));
         assert!(html.len() < 250 * 1000, "{}", html.len());
     }

@@ -138,7 +138,7 @@ mod tests {
         assert!(at("<b class=\"\">3</b>") < at("data-testid=\"break\""));
         assert!(at("data-testid=\"break\"") < at("<b class=\"\">4</b>"));
         assert!(at("Host port 1") < at("Host port 2"));
-        assert!(html.contains("answers on port 2 only, open"));
+        assert!(html.contains("answers on port 2 only, Open"));
         assert!(html.contains("Combined fault"));
     }
 

@@ -4,7 +4,11 @@ pub mod drawing;
 pub mod findings;
 pub mod head;
 pub mod line;
+pub mod scan;
 pub mod table;
+pub mod tags;
+pub mod typed;
+pub mod unit;
 
 use crate::components::ne107::Sign;
 use crate::markup::Markup;

@@ -1,6 +1,7 @@
 //! The table of all units.
 
-use shared::device::Device;
+use shared::ddc100::scaling::Scaled;
+use shared::ddc100::view::{Analog, Own};
 
 use crate::components::icon::Glyph;
 use crate::format::{age, millis};
@@ -9,8 +10,8 @@ use crate::markup::control::{Button, search, tick};
 use crate::markup::device::sign;
 use crate::network::state::net::{Net, Reach, Unit};
 use crate::network::state::table::{Column, Order};
-use crate::network::state::tags::{Scaling, Tags};
-use crate::network::state::unit::{judge, kind};
+use crate::network::state::tags::Tags;
+use crate::network::state::unit::{Judged, kind};
 
 /// Search, filter and what can be done with the rows.
 pub fn tools(html: &mut Markup, query: &str, only_faults: bool, shown: usize, all: usize) {
@@ -104,12 +105,11 @@ pub fn head(html: &mut Markup, order: Order) {
 }
 
 /// A unit.
-pub fn row(html: &mut Markup, net: &Net, tags: &Tags, at: usize, now_us: u64) {
+pub fn row(html: &mut Markup, net: &Net, tags: &Tags, (at, judged): (usize, &Judged), now_us: u64) {
     let Some(unit) = net.units.get(at) else {
         return;
     };
     let ports = net.ports.len();
-    let (said, health) = judge(unit, ports);
     let reach = unit.reach(ports);
     let stale = matches!(reach, Reach::Lost);
     let number = unit.info.unit.to_string();
@@ -122,7 +122,7 @@ pub fn row(html: &mut Markup, net: &Net, tags: &Tags, at: usize, now_us: u64) {
         ],
     );
     html.open("span", &[("class", "unit-sign")]);
-    if let Some(mark) = health.sign() {
+    if let Some(mark) = judged.health.sign() {
         sign(html, mark, "16");
     }
     html.close("span");
@@ -136,39 +136,34 @@ pub fn row(html: &mut Markup, net: &Net, tags: &Tags, at: usize, now_us: u64) {
     }
     html.close("span");
     html.node("span", "quiet unit-kind", kind(unit.device));
-    position(html, said.position, tags.scaling(unit.info.unit), stale);
+    position(html, judged.view.position.as_ref(), stale);
     html.open("span", &[("class", "unit-state")]);
-    html.text(&match (said.known, reach) {
+    html.text(&match (judged.known, reach) {
         (false, Reach::Unknown) => "not tried yet".to_owned(),
+        (false, Reach::Lost) => "off-line".to_owned(),
         (false, _) => reach.words(ports).to_owned(),
-        (true, Reach::Lost) => format!("off-line, was {}", said.state),
-        (true, _) => said.state.clone(),
+        (true, Reach::Lost) => format!("off-line; was: {}", judged.view.state),
+        (true, _) => judged.view.state.clone(),
     });
-    if said.local {
-        html.text(", local");
+    let local = judged.local();
+    if !local.is_empty() {
+        html.text(" · ").text(local);
     }
     html.close("span");
-    html.node("span", "unit-faults", &said.fault_words(2));
+    html.node("span", "unit-faults", &judged.fault_words(2));
     html.open("span", &[("class", "mono unit-bits")]);
-    bit(html, unit.fault[0], true, "host-a");
+    bit(html, unit.fault[0], "host-a");
     html.text(" ");
-    bit(html, unit.fault[1], true, "host-b");
+    bit(html, unit.fault[1], "host-b");
     html.node("i", "quiet", " / ");
-    bit(html, said.channels[0], true, "own-a");
+    own(html, judged.view.own.one, "own-a");
     html.text(" ");
-    // Without the optional channel a UEC always reports its fault.
-    bit(html, said.channels[1], has_channel_b(unit), "own-b");
+    own(html, judged.view.own.two, "own-b");
     html.close("span");
     html.node("span", "num quiet unit-age", &since(unit, now_us));
     let took = unit.took.map_or_else(String::new, millis);
     html.node("span", "num quiet unit-took", &took);
     html.close("div");
-}
-
-/// True for the types whose channel B bit tells of the second connection of the loop (reading D31).
-#[must_use]
-pub const fn has_channel_b(unit: &Unit) -> bool {
-    matches!(unit.device, Device::Ddc100Mx | Device::Ddc100MxB)
 }
 
 /// How old the last good answer is.
@@ -178,53 +173,57 @@ pub fn since(unit: &Unit, now_us: u64) -> String {
         .map_or_else(|| "never".to_owned(), |at| age(now_us.saturating_sub(at)))
 }
 
-/// A fault bit: 1 is a fault.
-pub fn bit(html: &mut Markup, bit: Option<bool>, matters: bool, testid: &str) {
+/// A fault bit of the host: 1 is a fault.
+pub fn bit(html: &mut Markup, bit: Option<bool>, testid: &str) {
     let (class, text) = match bit {
         None => ("quiet", "\u{2013}"),
         Some(false) => ("quiet", "0"),
-        Some(true) if matters => ("bit-on", "1"),
-        Some(true) => ("quiet", "1"),
+        Some(true) => ("bit-on", "1"),
     };
     html.open("span", &[("class", class), ("data-bit", testid)]);
     html.text(text).close("span");
 }
 
-/// The position with its bar, in percent unless it is shown raw.
-fn position(html: &mut Markup, raw: Option<u16>, scaling: Scaling, stale: bool) {
+/// The same as the unit reports it of itself. The bit of a channel that is not fitted is always
+/// set, and no fault.
+pub fn own(html: &mut Markup, own: Own, testid: &str) {
+    let (class, text) = match own {
+        Own::Unknown => ("quiet", "\u{2013}"),
+        Own::Good => ("quiet", "0"),
+        Own::Fault => ("bit-on", "1"),
+        Own::NotFitted => ("quiet", "1"),
+    };
+    html.open(
+        "span",
+        &[
+            ("class", class),
+            ("data-bit", testid),
+            ("title", own.label()),
+        ],
+    );
+    html.text(text).close("span");
+}
+
+/// The position with its bar.
+fn position(html: &mut Markup, analog: Option<&Analog>, stale: bool) {
     html.open("span", &[("class", "num unit-position")]);
-    match raw {
+    match analog {
         None => {
             html.text("\u{2013}");
         }
-        Some(raw) if scaling == Scaling::Raw => {
-            html.text(&raw.to_string());
-            html.text(" ").node("i", "unit", "raw");
-        }
-        Some(raw) => {
-            let tenths = percent_tenths(raw, scaling);
-            let text = if scaling == Scaling::Percent {
-                raw.to_string()
-            } else {
-                format!("{}.{}", tenths / 10, tenths % 10)
-            };
-            html.text(&text);
-            html.text(" ").node("i", "unit", "%");
-            if !stale {
-                bar(html, tenths);
+        Some(analog) => {
+            html.text(&analog.to_string());
+            let tenths = analog.scaled.and_then(Scaled::tenths);
+            if let Some(tenths) = tenths.filter(|_| !stale) {
+                bar(html, u32::from(tenths));
             }
         }
     }
     html.close("span");
 }
 
-/// A count as tenths of a percent.
-#[must_use]
-pub fn percent_tenths(raw: u16, scaling: Scaling) -> u32 {
-    u32::from(raw) * 1000 / u32::from(scaling.full().max(1))
-}
-
-fn bar(html: &mut Markup, tenths: u32) {
+/// A thin bar, in tenths of a percent.
+pub fn bar(html: &mut Markup, tenths: u32) {
     html.open(
         "svg",
         &[
@@ -257,11 +256,13 @@ fn bar(html: &mut Markup, tenths: u32) {
 mod tests {
     use super::*;
     use crate::network::state::net::tests::{network, poll};
+    use shared::ddc100::scaling::Scaling;
     use shared::proto::DdcShape;
 
     fn drawn(net: &Net, tags: &Tags, at: usize) -> String {
         let mut html = Markup::new();
-        row(&mut html, net, tags, at, 8_000_000);
+        let judged = Judged::of(&net.units[at], net.ports.len(), tags);
+        row(&mut html, net, tags, (at, &judged), 8_000_000);
         html.finish()
     }
 
@@ -273,10 +274,10 @@ mod tests {
         let html = drawn(&net, &Tags::default(), 0);
         assert!(html.contains("<span class=\"bit-on\" data-bit=\"host-b\">1</span>"));
         // The bit of a channel that the type does not have is no alarm.
-        assert!(html.contains("<span class=\"quiet\" data-bit=\"own-b\">1</span>"));
+        assert!(html.contains("<span class=\"quiet\" data-bit=\"own-b\" title=\"not fitted"));
         assert!(html.contains("<span class=\"quiet\" data-bit=\"host-a\">0</span>"));
-        assert!(html.contains(">61 <i class=\"unit\">%</i>"));
-        assert!(html.contains(">open</span>") && html.contains("3.0 s"));
+        assert!(html.contains(">61 %<svg"));
+        assert!(html.contains(">Open · Stop</span>") && html.contains("3.0 s"));
         let html = drawn(&net, &Tags::default(), 1);
         assert!(html.contains("not tried yet") && html.contains("never"));
         assert!(html.contains("data-bit=\"host-a\">\u{2013}"));
@@ -293,13 +294,13 @@ mod tests {
         );
         let mut tags = Tags::default();
         assert!(
-            drawn(&net, &tags, 0).contains("bar-beyond"),
-            "2048 is no percent"
+            drawn(&net, &tags, 0).contains("2048, beyond 0 to 100"),
+            "no percent"
         );
-        tags.set_scaling(1, Scaling::Twelve);
-        assert!(drawn(&net, &tags, 0).contains(">50.0 <i"));
+        tags.set_scaling(1, Scaling::TwelveBits);
+        assert!(drawn(&net, &tags, 0).contains(">50.0 %<svg"));
         tags.set_scaling(1, Scaling::Raw);
-        assert!(drawn(&net, &tags, 0).contains(">2048 <i class=\"unit\">raw"));
+        assert!(drawn(&net, &tags, 0).contains(">2048 counts<"));
     }
 
     #[test]
@@ -313,7 +314,7 @@ mod tests {
         );
         poll(&mut net, 1, [Some(true); 2], &[]);
         let html = drawn(&net, &Tags::default(), 0);
-        assert!(html.contains("off-line, was closed") && html.contains("stale"));
+        assert!(html.contains("off-line; was: Closed") && html.contains("stale"));
         assert!(html.contains("sign-f"));
     }
 

@@ -1,6 +1,10 @@
 //! The program's screens.
 
 mod network;
+mod scan;
+mod tags;
+mod typed;
+mod unit;
 
 use std::sync::Arc;
 
@@ -16,7 +20,12 @@ use crate::markup::Markup;
 #[component]
 pub fn Network() -> impl IntoView {
     let store = Store::provide();
+    let is_unit = memo(move || !store.tag.with(String::is_empty));
     let heads: Draw = Arc::new(move |html: &mut Markup| {
+        // The page of a device has its own head and tabs.
+        if is_unit.get() {
+            return;
+        }
         let bus = store.bus.get();
         let mut others: Vec<String> = Vec::new();
         store.devices.with(|devices| {
@@ -30,6 +39,9 @@ pub fn Network() -> impl IntoView {
         store.net.with(|net| head::head(html, &bus, net, &others));
     });
     let tabs: Draw = Arc::new(move |html: &mut Markup| {
+        if is_unit.get() {
+            return;
+        }
         head::tabs(html, &store.bus.get(), &store.tab.get());
     });
     let notes: Draw = Arc::new(move |html: &mut Markup| {
@@ -37,17 +49,53 @@ pub fn Network() -> impl IntoView {
         store.net.with(|net| head::missing(html, &bus, net, online));
     });
     let has = memo(move || store.net.with(|net| net.shape.is_some()));
-    let body = part(move || match has.get() {
-        true => view! { <network::NetworkView/> }.into_any(),
-        false => ().into_any(),
+    let screen = memo(move || {
+        let bus = store.bus.with(|bus| !bus.is_empty());
+        Screen::of(&store.tag.get(), bus, &store.tab.get(), has.get())
+    });
+    let body = part(move || match screen.get() {
+        Screen::Unit => view! { <unit::UnitPage/> }.into_any(),
+        Screen::Network => view! { <network::NetworkView/> }.into_any(),
+        Screen::Tags => view! { <tags::TagsPage/> }.into_any(),
+        Screen::Faults => view! { <typed::FaultTablePage/> }.into_any(),
+        Screen::Scan => view! { <scan::ScanPage/> }.into_any(),
+        Screen::Nothing => ().into_any(),
     });
     view! {
         <div class="net">
             <Drawn class="net-head" draw=heads/>
-            <Drawn class="tabs" role="tablist" label="Network" draw=tabs/>
+            <Drawn class="tabs net-tabs" role="tablist" label="Network" draw=tabs/>
             <Drawn class="net-notes" draw=notes/>
             {body}
         </div>
+    }
+}
+
+/// What is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Screen {
+    Unit,
+    Network,
+    Tags,
+    Faults,
+    Scan,
+    /// What the backend tells is waited for.
+    Nothing,
+}
+
+impl Screen {
+    /// What an address leads to. `has` is true once the network is known.
+    fn of(tag: &str, bus: bool, tab: &str, has: bool) -> Self {
+        match (tag.is_empty(), bus, tab) {
+            (true, false, "scan") => Self::Scan,
+            (true, false, _) => Self::Faults,
+            _ if !has => Self::Nothing,
+            (false, ..) => Self::Unit,
+            (_, _, "tags") => Self::Tags,
+            (_, _, "faults") => Self::Faults,
+            (_, _, "scan") => Self::Scan,
+            _ => Self::Network,
+        }
     }
 }
 
@@ -69,4 +117,20 @@ fn save(what: &str, extension: &str, text: &str) {
     };
     let what: String = what.chars().map(safe).collect();
     crate::browser::save(&format!("valvescope-{what}.{extension}"), text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Screen;
+
+    #[test]
+    fn addresses_lead_to_screens() {
+        assert_eq!(Screen::of("", false, "", false), Screen::Faults);
+        assert_eq!(Screen::of("", false, "scan", false), Screen::Scan);
+        assert_eq!(Screen::of("", true, "scan", false), Screen::Nothing);
+        assert_eq!(Screen::of("", true, "", true), Screen::Network);
+        assert_eq!(Screen::of("", true, "tags", true), Screen::Tags);
+        assert_eq!(Screen::of("MOV-1", true, "", true), Screen::Unit);
+        assert_eq!(Screen::of("MOV-1", false, "", false), Screen::Nothing);
+    }
 }

@@ -16,7 +16,7 @@ use crate::network::markup::{drawing, findings, head, line, table};
 use crate::network::state::findings::marks;
 use crate::network::state::net::Net;
 use crate::network::state::picture::Picture;
-use crate::network::state::table::{Order, as_text, rows};
+use crate::network::state::table::{Filter, Order, as_text, rows};
 use crate::network::store::Store;
 
 /// The network that is followed.
@@ -32,7 +32,10 @@ pub(super) fn NetworkView() -> impl IntoView {
                     .map(|d| marks(d, net.units.len()))
                     .unwrap_or_default()
             });
-            store.tags.with(|tags| Picture::of(net, tags, marks))
+            let judged = store.judged.get();
+            store
+                .tags
+                .with(|tags| Picture::of(net, &judged, tags, marks))
         })
     });
     let said: Draw = Arc::new(move |html: &mut Markup| {
@@ -87,6 +90,13 @@ pub(super) fn NetworkView() -> impl IntoView {
             store.chosen.set(Some(next));
         }
     };
+    let legend: Draw = Arc::new(move |html: &mut Markup| {
+        if !narrow.get() {
+            picture.with(|picture| drawing::legend(html, picture));
+        }
+    });
+    // Beside a low drawing there is no room for the figures; they stand below it.
+    let low = move || picture.with(|p| p.nodes.len() <= 52);
     let ports: Draw = Arc::new(move |html: &mut Markup| {
         store.net.with(|net| head::ports(html, net));
     });
@@ -107,10 +117,13 @@ pub(super) fn NetworkView() -> impl IntoView {
     view! {
         <div class="net-page" data-testid="network">
             <Drawn class="net-findings" role="status" draw=said/>
-            <div class="net-picture">
-                <div class="net-drawing" on:keydown=on_key>
-                    <Drawn class="net-ring" draw=drawn on_act=choose/>
-                    <Drawn class="net-poll" draw=poll/>
+            <div class="net-picture" class:low=low>
+                <div>
+                    <div class="net-drawing" on:keydown=on_key>
+                        <Drawn class="net-ring" draw=drawn on_act=choose/>
+                        <Drawn class="net-poll" draw=poll/>
+                    </div>
+                    <Drawn class="net-legend quiet" draw=legend/>
                 </div>
                 <div class="net-side">
                     <Drawn class="net-ports" draw=ports/>
@@ -144,10 +157,16 @@ fn UnitTable() -> impl IntoView {
     let query = RwSignal::new(store.query("q"));
     let only = RwSignal::new(!store.query("faults").is_empty());
     let shown = memo(move || {
-        let (order, query, only) = (order.get(), query.get(), only.get());
-        store
-            .net
-            .with(|net| store.tags.with(|tags| rows(net, tags, order, &query, only)))
+        let (order, query) = (order.get(), query.get());
+        let filter = Filter {
+            order,
+            query: &query,
+            only_faults: only.get(),
+        };
+        store.net.with(|net| {
+            let judged = store.judged.get();
+            store.tags.with(|tags| rows(net, &judged, tags, filter))
+        })
     });
     let tools: Draw = Arc::new(move |html: &mut Markup| {
         let all = store.net.with(|net| net.units.len());
@@ -167,9 +186,10 @@ fn UnitTable() -> impl IntoView {
             let comma = if copied { '\t' } else { ',' };
             let text = store.net.with_untracked(|net| {
                 let (rows, now) = (shown.get_untracked(), store.now_us.get_untracked());
+                let judged = store.judged.get_untracked();
                 store
                     .tags
-                    .with_untracked(|tags| as_text(net, tags, &rows, now, comma))
+                    .with_untracked(|tags| as_text(net, tags, (&judged, &rows), now, comma))
             });
             if copied {
                 spawn_local(async move {
@@ -188,13 +208,17 @@ fn UnitTable() -> impl IntoView {
     let draw: DrawRow = Arc::new(move |at: usize, html: &mut Markup| {
         let now = store.now_us.get();
         let place = shown.with(|rows| rows.get(at).copied());
-        if let Some(place) = place {
+        let Some(place) = place else { return };
+        store.judged.with(|judged| {
+            let Some(judged) = judged.get(place) else {
+                return;
+            };
             store.net.with(|net| {
                 store
                     .tags
-                    .with(|tags| table::row(html, net, tags, place, now));
+                    .with(|tags| table::row(html, net, tags, (place, judged), now));
             });
-        }
+        });
     });
     let on_open = Callback::new(move |(at, _): (usize, Option<web_sys::Element>)| {
         if let Some(place) = shown.with_untracked(|rows| rows.get(at).copied()) {

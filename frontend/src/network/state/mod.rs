@@ -3,8 +3,12 @@
 pub mod cable;
 pub mod findings;
 pub mod geometry;
+pub mod list;
 pub mod net;
 pub mod picture;
+pub mod scan;
 pub mod table;
 pub mod tags;
+pub mod typed;
 pub mod unit;
+pub mod wish;

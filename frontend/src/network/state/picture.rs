@@ -3,9 +3,9 @@
 use shared::proto::{DdcShape, LineState};
 
 use super::cable::{Stretch, stretches};
-use super::net::{Net, Reach, reach};
+use super::net::{Net, Reach, Unit, reach};
 use super::tags::Tags;
-use super::unit::{Health, judge};
+use super::unit::{Health, Judged};
 
 /// A unit of the drawing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,44 +64,32 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The picture of a network on the line.
+    /// The picture of a network on the line. `judged` are all its units.
     #[must_use]
-    pub fn of(net: &Net, tags: &Tags, marks: Vec<Mark>) -> Self {
+    pub fn of(net: &Net, judged: &[Judged], tags: &Tags, marks: Vec<Mark>) -> Self {
         let shape = net.shape.unwrap_or(DdcShape::Loop);
         let ports = net.ports.len();
-        let node = |unit: &super::net::Unit| {
-            let (said, health) = judge(unit, ports);
-            let mut words = if said.known {
-                said.state.clone()
-            } else {
-                String::new()
-            };
-            for part in [
-                said.fault_words(2),
-                if said.local {
-                    "local".into()
-                } else {
-                    String::new()
-                },
-            ] {
-                if !part.is_empty() {
-                    words.push_str("; ");
-                    words.push_str(&part);
-                }
+        let node = |(unit, judged): (&Unit, &Judged)| {
+            let mut words = Vec::new();
+            if judged.known {
+                words.push(judged.view.state.clone());
             }
+            words.push(judged.fault_words(2));
+            words.push(judged.local().to_owned());
+            words.retain(|w| !w.is_empty());
             Node {
                 unit: unit.info.unit,
                 tag: tags.tag(unit).to_owned(),
                 reach: unit.reach(ports),
-                health,
-                words,
+                health: judged.health,
+                words: words.join("; "),
             }
         };
         let faults: Vec<_> = net.units.iter().map(|u| u.fault).collect();
         Self {
             shape,
             ports: net.ports.iter().map(|p| Some(p.state)).collect(),
-            nodes: net.units.iter().map(node).collect(),
+            nodes: net.units.iter().zip(judged).map(node).collect(),
             stretches: stretches(&faults, shape, ports),
             marks,
         }
@@ -224,7 +212,8 @@ pub(crate) mod tests {
             to: 3,
             certain: true,
         };
-        Picture::of(&net, &Tags::default(), vec![mark])
+        let tags = Tags::default();
+        Picture::of(&net, &Judged::all(&net, &tags), &tags, vec![mark])
     }
 
     #[test]
@@ -232,15 +221,15 @@ pub(crate) mod tests {
         let picture = broken();
         assert_eq!(
             picture.name(1),
-            "Unit 2, MOV-002: answers on port 1 only, stopped; Combined fault, Phase error"
+            "Unit 2, MOV-002: answers on port 1 only, Stopped between the ends; Combined fault, Phase error; Stop"
         );
         assert_eq!(
             picture.name(2),
-            "Unit 3, MOV-003: answers on port 1 only, open, break after it"
+            "Unit 3, MOV-003: answers on port 1 only, Open; Stop, break after it"
         );
         assert_eq!(
             picture.name(3),
-            "Unit 4, MOV-004: answers on port 2 only, open, break before it"
+            "Unit 4, MOV-004: answers on port 2 only, Open; Stop, break before it"
         );
         assert_eq!(picture.name(9), "");
     }

@@ -2,9 +2,12 @@
 
 use core::cmp::Ordering;
 
+use shared::ddc100::scaling::Scaled;
+use shared::ddc100::view::Own;
+
 use super::net::{Net, Unit};
 use super::tags::Tags;
-use super::unit::{Health, Said, judge, kind};
+use super::unit::{Health, Judged, kind};
 
 /// A column that the table can be sorted by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -139,10 +142,10 @@ impl Key {
     }
 }
 
-fn key(unit: &Unit, said: &Said, health: Health, tags: &Tags, column: Column) -> Key {
+fn key(unit: &Unit, judged: &Judged, tags: &Tags, column: Column) -> Key {
     let maybe = |n: Option<u64>| n.map_or(Key::None, Key::Number);
     match column {
-        Column::Worst => Key::Number(u64::from(u8::MAX - health as u8)),
+        Column::Worst => Key::Number(u64::from(u8::MAX - judged.health as u8)),
         // Rows come in the order of the cable, and equal ones stay in it.
         Column::Place => Key::Number(0),
         Column::Unit => Key::Number(u64::from(unit.info.unit)),
@@ -150,12 +153,13 @@ fn key(unit: &Unit, said: &Said, health: Health, tags: &Tags, column: Column) ->
             "" => Key::None,
             tag => Key::Text(tag.to_lowercase()),
         },
-        Column::Position => maybe(said.position.map(|raw| {
-            let scaling = tags.scaling(unit.info.unit);
-            u64::from(raw) * 4095 / u64::from(scaling.full().max(1))
+        // What is on no scale follows what is.
+        Column::Position => maybe(judged.view.position.as_ref().map(|analog| {
+            let tenths = analog.scaled.and_then(Scaled::tenths);
+            tenths.map_or_else(|| 10_000 + u64::from(analog.raw), u64::from)
         })),
-        Column::Status => match said.known {
-            true => Key::Text(said.state.clone()),
+        Column::Status => match judged.known {
+            true => Key::Text(judged.view.state.clone()),
             false => Key::None,
         },
         Column::Age => maybe(unit.at.map(|at| u64::MAX - at)),
@@ -165,22 +169,22 @@ fn key(unit: &Unit, said: &Said, health: Health, tags: &Tags, column: Column) ->
 
 /// True if a unit is wanted: by its address, tag, description, kind, state or a fault, whatever of
 /// it has all words of the query.
-fn wanted(unit: &Unit, said: &Said, health: Health, tags: &Tags, query: &str) -> bool {
+fn wanted(unit: &Unit, judged: &Judged, tags: &Tags, query: &str) -> bool {
     let mut text = format!(
         "{} {} {} {} {} {} {}",
         unit.info.unit,
         tags.tag(unit),
         tags.description(unit),
         kind(unit.device),
-        said.state,
-        if said.local { "local" } else { "" },
-        if health == Health::Lost {
+        judged.view.state,
+        judged.local(),
+        if judged.health == Health::Lost {
             "off-line"
         } else {
             ""
         },
     );
-    for bit in &said.faults {
+    for bit in &judged.view.faults {
         text.push(' ');
         text.push_str(bit.member.label);
     }
@@ -191,16 +195,29 @@ fn wanted(unit: &Unit, said: &Said, health: Health, tags: &Tags, query: &str) ->
         .all(|word| text.contains(word))
 }
 
-/// The places of the units that are shown, in the order in which they are.
+/// What the table shows of which units.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Filter<'a> {
+    /// By which column it is sorted.
+    pub order: Order,
+    /// Words that all must be in what a unit says.
+    pub query: &'a str,
+    /// True for what is wrong only.
+    pub only_faults: bool,
+}
+
+/// The places of the units that are shown, in the order in which they are. `judged` are all units
+/// of the network.
 #[must_use]
-pub fn rows(net: &Net, tags: &Tags, order: Order, query: &str, only_faults: bool) -> Vec<usize> {
+pub fn rows(net: &Net, judged: &[Judged], tags: &Tags, filter: Filter<'_>) -> Vec<usize> {
+    let order = filter.order;
     let mut found: Vec<(Key, usize)> = Vec::new();
-    for (at, unit) in net.units.iter().enumerate() {
-        let (said, health) = judge(unit, net.ports.len());
-        if (only_faults && health <= Health::Unknown) || !wanted(unit, &said, health, tags, query) {
+    for (at, (unit, judged)) in net.units.iter().zip(judged).enumerate() {
+        let good = judged.health <= Health::Unknown;
+        if (filter.only_faults && good) || !wanted(unit, judged, tags, filter.query) {
             continue;
         }
-        let key = key(unit, &said, health, tags, order.column);
+        let key = key(unit, judged, tags, order.column);
         // The sorts of the standard library are several kilobytes for each type.
         let place = found.partition_point(|(other, _)| other.compare(&key, order.down).is_le());
         found.insert(place, (key, at));
@@ -219,7 +236,13 @@ const COLUMNS: &str = "order,unit,tag,description,type,state,position,scale,host
 /// Those rows as text for spreadsheets, with commas between the columns for files and tabs for the
 /// clipboard.
 #[must_use]
-pub fn as_text(net: &Net, tags: &Tags, rows: &[usize], now_us: u64, comma: char) -> String {
+pub fn as_text(
+    net: &Net,
+    tags: &Tags,
+    (judged, rows): (&[Judged], &[usize]),
+    now_us: u64,
+    comma: char,
+) -> String {
     let mut out = COLUMNS.replace(',', &comma.to_string());
     let bit = |bit: Option<bool>| match bit {
         Some(true) => "1",
@@ -227,12 +250,16 @@ pub fn as_text(net: &Net, tags: &Tags, rows: &[usize], now_us: u64, comma: char)
         None => "",
     };
     for at in rows {
-        let Some(unit) = net.units.get(*at) else {
+        let Some((unit, judged)) = net.units.get(*at).zip(judged.get(*at)) else {
             continue;
         };
-        let (said, _) = judge(unit, net.ports.len());
+        let own = [judged.view.own.one, judged.view.own.two].map(|own| match own {
+            Own::Unknown => None,
+            Own::Good => Some(false),
+            Own::Fault | Own::NotFitted => Some(true),
+        });
         let number = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
-        let names: Vec<&str> = said.faults.iter().map(|b| b.member.label).collect();
+        let names: Vec<&str> = judged.view.faults.iter().map(|b| b.member.label).collect();
         let age = unit.at.map(|at| now_us.saturating_sub(at) / 1_000_000);
         let took = unit
             .took
@@ -243,13 +270,13 @@ pub fn as_text(net: &Net, tags: &Tags, rows: &[usize], now_us: u64, comma: char)
             tags.tag(unit).to_owned(),
             tags.description(unit).to_owned(),
             unit.info.kind.clone(),
-            said.state.clone(),
-            number(said.position.map(u64::from)),
+            judged.view.state.clone(),
+            number(judged.view.position.map(|p| u64::from(p.raw))),
             tags.scaling(unit.info.unit).key().to_owned(),
             bit(unit.fault[0]).to_owned(),
             bit(unit.fault[1]).to_owned(),
-            bit(said.channels[0]).to_owned(),
-            bit(said.channels[1]).to_owned(),
+            bit(own[0]).to_owned(),
+            bit(own[1]).to_owned(),
             names.join("; "),
             number(age),
             took.unwrap_or_default(),
@@ -290,16 +317,26 @@ mod tests {
 
     fn net() -> Net {
         let mut net = network(4, DdcShape::Loop, 2);
-        poll(&mut net, 1, GOOD, &[10, 0x0802, 0, 0, 0, 0, 0, 0, 0]);
-        poll(&mut net, 2, GOOD, &[90, 0x1004, 0, 0, 0, 0, 0, 0, 0]);
+        poll(&mut net, 1, GOOD, &[10, 0x0802, 0, 0, 1, 0, 0, 0, 0]);
+        poll(&mut net, 2, GOOD, &[90, 0x1004, 0, 0, 1, 0, 0, 0, 0]);
         poll(&mut net, 3, [Some(true), Some(true)], &[]);
         net.units[1].at = Some(1_000_000);
         net.units[1].took = Some(162_400);
         net
     }
 
+    fn shown(order: &str, query: &str, only_faults: bool) -> Vec<usize> {
+        let (net, tags) = (net(), Tags::default());
+        let filter = Filter {
+            order: Order::parse(order),
+            query,
+            only_faults,
+        };
+        rows(&net, &Judged::all(&net, &tags), &tags, filter)
+    }
+
     fn sorted(text: &str) -> Vec<usize> {
-        rows(&net(), &Tags::default(), Order::parse(text), "", false)
+        shown(text, "", false)
     }
 
     #[test]
@@ -323,15 +360,7 @@ mod tests {
 
     #[test]
     fn units_are_found_by_their_words() {
-        let find = |query, faults| {
-            rows(
-                &net(),
-                &Tags::default(),
-                Order::parse("place"),
-                query,
-                faults,
-            )
-        };
+        let find = |query, faults| shown("place", query, faults);
         assert_eq!(find("torque", false), [1]);
         assert_eq!(find("mov-003", false), [2]);
         assert_eq!(find("off-line", false), [2]);
@@ -344,15 +373,17 @@ mod tests {
     fn a_row_as_csv() {
         let mut net = net();
         net.units[1].info.tag = "=MOV \"2\", x".into();
-        let csv = as_text(&net, &Tags::default(), &[1, 2], 3_000_000, ',');
+        let tags = Tags::default();
+        let judged = Judged::all(&net, &tags);
+        let csv = as_text(&net, &tags, (&judged, &[1, 2]), 3_000_000, ',');
         let lines: Vec<_> = csv.lines().collect();
         assert_eq!(
             lines[1],
-            "2,2,\"'=MOV \"\"2\"\", x\",,ddc100-uec,stopped,90,0-100,0,0,0,0,Open torque switch fault,2,162.4"
+            "2,2,\"'=MOV \"\"2\"\", x\",,ddc100-uec,Stopped between the ends,90,0-100,0,0,0,0,Open torque switch fault,2,162.4"
         );
         assert_eq!(
             lines[2],
-            "3,3,MOV-003,,ddc100-uec,status not read,,0-100,1,1,,,,,"
+            "3,3,MOV-003,,ddc100-uec,Not read yet,,0-100,1,1,,,,,"
         );
     }
 }

@@ -8,54 +8,9 @@
 
 use std::collections::BTreeMap;
 
+use shared::ddc100::scaling::Scaling;
+
 use super::net::Unit;
-
-/// How an analog register of a unit counts (table 3.5, reading D7). The unit does not tell; it is
-/// one of its settings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Scaling {
-    /// 0 to 100, the default.
-    #[default]
-    Percent,
-    /// 0 to 255.
-    Byte,
-    /// 0 to 4095.
-    Twelve,
-    /// Whatever it is: as transmitted.
-    Raw,
-}
-
-impl Scaling {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Percent, Self::Byte, Self::Twelve, Self::Raw];
-
-    /// The word in files.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Percent => "0-100",
-            Self::Byte => "0-255",
-            Self::Twelve => "0-4095",
-            Self::Raw => "raw",
-        }
-    }
-
-    /// The scaling with this [`key`](Self::key).
-    #[must_use]
-    pub fn from_key(key: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|s| s.key() == key)
-    }
-
-    /// The count that is 100 %.
-    #[must_use]
-    pub const fn full(self) -> u16 {
-        match self {
-            Self::Percent => 100,
-            Self::Byte => 255,
-            Self::Twelve | Self::Raw => 4095,
-        }
-    }
-}
 
 /// What is known of one unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -192,7 +147,7 @@ mod tests {
         let entry = Entry {
             tag: "80-HS-4141".into(),
             description: "Feed\twater".into(),
-            scaling: Some(Scaling::Twelve),
+            scaling: Some(Scaling::TwelveBits),
         };
         tags.set(1, entry);
         tags.set_scaling(250, Scaling::Raw);
