@@ -24,11 +24,11 @@
 //!
 //! | where | hooks |
 //! |---|---|
-//! | everywhere | `nav-decode`, `nav-devices`, `nav-traffic`, `nav-settings`, `conn-state` (text), `read-only`, `conn-notice`, `help`, `page-decode`, `page-devices`, `page-device`, `page-traffic`, `page-settings` |
-//! | a program of its own | `program` (`data-state` is `loading`, `open` or `failed`), `program-host`, `program-failed`, `program-retry`, `page-dop`, `dop-link` |
+//! | everywhere | `nav-decode`, `nav-devices`, `nav-network` (only with such a network), `nav-traffic`, `nav-settings`, `conn-state` (text), `read-only`, `conn-notice`, `help`, `page-decode`, `page-devices`, `page-device`, `page-traffic`, `page-settings` |
+//! | a program of its own | `program` (`data-state` is `loading`, `open` or `failed`), `program-host`, `program-failed`, `program-retry`, `page-dop`, `dop-link`, `page-network`, `network-link` |
 //! | decode | `paste`, `file`, `open-file`, `clear`, `decode-framing`, `decode-device`, `sample`, `sample-button` (`data-sample`), `found`, `cancel`, `frame-list`, `frame-row` (`data-index`, `data-role`), `problem-count`, `with-notes`, `problem` (`data-code`) |
 //! | a frame | `frame-detail`, `frame-pair`, `frame-problem` (`data-code`), `hex-byte` (`data-offset`; class `marked` while hovered, `selected`), `field-row` (`data-path`; the same classes), `expand-all` (bits begin closed), `field-facts`, `copy-hex`, `copy-text`, `copy-json` |
-//! | devices | `device-list`, `device-row` (`data-tag`) |
+//! | devices | `network-of-devices`, `device-list`, `device-row` (`data-tag`) |
 //! | a device | `device-header`, `device-silent`, `tab-overview`, `tab-values`, `tab-traffic`, `overview`, `position`, `condition` (`data-key`) |
 //! | values | `register-search`, `filter-table`, `filter-group`, `filter-access`, `filter-level`, `show-reserved`, `raw-form`, `sort-address`, `sort-name`, `sort-value`, `sort-age`, `nothing`, `widen`, `copy-row`, `register-list`, `register-row` (`data-address`, `data-table`, `data-key`), `register-value`, `register-age`, `register-detail`, `read-visible`, `read-all`, `read-selected`, `poll-visible`, `job`, `cancel-read` |
 //! | traffic | `traffic-bus`, `traffic-list`, `frame-row`, `pause`, `clear-traffic`, `filter-unit`, `filter-function`, `filter-problems`, `export`, `traffic-count`, `missed` |

@@ -71,7 +71,7 @@ fn steps(report: &mut Report) -> Result {
         shell::run(&mut native("build", &BINARY_AND_ITS_TESTS))?;
         log.run_tests("peers", peers.environment(&mut with_binary("peers")))
     })?;
-    for test in ["e2e", "e2e_dop", "e2e_hart"] {
+    for test in ["e2e", "e2e_ddc", "e2e_dop", "e2e_hart"] {
         report.step("end to end", |log| {
             log.run_tests(test, browser.environment(&mut with_binary(test)))
         })?;
@@ -88,13 +88,15 @@ fn native(verb: &str, args: &[&str]) -> Command {
 
 /// Selects the binary together with the tests that start it: without a test among the targets,
 /// cargo would leave out the dev-dependencies, unify other features and compile most of it again.
-const BINARY_AND_ITS_TESTS: [&str; 12] = [
+const BINARY_AND_ITS_TESTS: [&str; 14] = [
     "--bin",
     "valvescope",
     "--test",
     "peers",
     "--test",
     "e2e",
+    "--test",
+    "e2e_ddc",
     "--test",
     "e2e_dop",
     "--test",

@@ -159,6 +159,11 @@ pub fn welcome(html: &mut Markup) {
     html.open("a", &link)
         .text("DOP objects: paste registers")
         .close("a");
+    html.text(" Faults of a DDC-100 network? ");
+    let link = [("href", "#/network"), ("data-testid", "network-link")];
+    html.open("a", &link)
+        .text("Fault table and scan time")
+        .close("a");
     html.close("p");
     html.node("h2", "", "Or try one");
     html.open("ul", &[("class", "sample-list")]);

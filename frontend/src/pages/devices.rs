@@ -14,6 +14,7 @@ use crate::markup::{Markup, device};
 use crate::router::Router;
 use crate::state::health::{Health, health};
 use crate::state::overview::Overview;
+use crate::state::plant::Plant;
 use crate::state::route::{Route, Screen};
 use crate::state::shortcuts::Action;
 use crate::state::window::moved;
@@ -66,12 +67,20 @@ pub fn DevicesPage() -> impl IntoView {
         cursor.update(|at| *at = moved(key, *at, count, 1).or(*at));
     });
     let count = Signal::derive(move || order.with(Vec::len));
+    let network = memo(move || live.plant.with(Plant::network));
     let none = move || live.conn.get().is_up() && count.get() == 0;
     view! {
         <div class="page" data-testid="page-devices">
             <header>
                 <h1>"Devices"</h1>
                 <span class="quiet">"worst first"</span>
+                <a
+                    href=move || network.with(|n| n.as_ref().map(|n| format!("#/network/{n}")))
+                    data-testid="network-of-devices"
+                    hidden=move || network.with(Option::is_none)
+                >
+                    "DDC-100 network"
+                </a>
             </header>
             <ConnNotice/>
             <p class="empty" hidden=move || !none()>
