@@ -15,7 +15,7 @@ use std::task::{Context as Task, Poll};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use shared::address::{Address, Table};
 use shared::decode::{Context, decode_into};
-use shared::device::Device;
+use shared::device::{Device, Family};
 use shared::frame::{Frame, Framing, Role, scan_into};
 use shared::map::decode::each_value;
 use shared::map::row::Model;
@@ -50,6 +50,58 @@ fn scanning(c: &mut Criterion) {
         b.iter(|| {
             scan_into(black_box(&load.bytes), Framing::Rtu, &mut index);
             assert_eq!(index.len() as u64, load.messages);
+        });
+    });
+    group.finish();
+}
+
+/// HART: frames, check byte and pairs of a stream, then the tree of each frame. The stream is a
+/// master that polls commands 3 and 48 of a Rotork actuator (frames R5, R6, R9 and R10 of the
+/// fixtures), so every second frame is an answer.
+fn hart(c: &mut Criterion) {
+    const POLL: [&[u8]; 4] = [
+        &[0x82, 0xAE, 0xDD, 0x01, 0x23, 0x45, 0x03, 0x00, 0x95],
+        &[
+            0x86, 0xAE, 0xDD, 0x01, 0x23, 0x45, 0x03, 0x1A, 0x00, 0x00, 0x41, 0x40, 0x00, 0x00,
+            0x39, 0x42, 0x48, 0x00, 0x00, 0x39, 0x42, 0x46, 0x00, 0x00, 0x39, 0x41, 0x48, 0x00,
+            0x00, 0x39, 0x7F, 0xA0, 0x00, 0x00, 0x52,
+        ],
+        &[0x82, 0xAE, 0xDD, 0x01, 0x23, 0x45, 0x30, 0x00, 0xA6],
+        &[
+            0x86, 0xAE, 0xDD, 0x01, 0x23, 0x45, 0x30, 0x0B, 0x00, 0x90, 0x02, 0x00, 0x02, 0x00,
+            0xA4, 0x40, 0x08, 0x00, 0x00, 0xD5,
+        ],
+    ];
+    let one: Vec<u8> = POLL
+        .iter()
+        .flat_map(|frame| [&[0xFF; 5], *frame].concat())
+        .collect();
+    let bytes = one.repeat(usize::try_from(MESSAGES / 4).expect("it fits"));
+    let mut group = c.benchmark_group("hart");
+    let mut index: Vec<Frame> = Vec::new();
+    group.throughput(Throughput::Elements(MESSAGES));
+    group.bench_function("stream to frames", |b| {
+        b.iter(|| {
+            scan_into(black_box(&bytes), Framing::Hart, &mut index);
+            assert_eq!(index.len() as u64, MESSAGES);
+        });
+    });
+    let context = Context {
+        framing: Framing::Hart,
+        device: Device::Rotork(Family::Iq),
+    };
+    scan_into(&one, Framing::Hart, &mut index);
+    let frames = index.clone();
+    let mut tree = Decoded::default();
+    group.throughput(Throughput::Elements(4));
+    group.bench_function("field trees of a poll of two commands", |b| {
+        b.iter(|| {
+            for frame in &frames {
+                let from = usize::try_from(frame.offset).expect("small");
+                let to = usize::try_from(frame.end()).expect("small");
+                decode_into(frame, black_box(&one[from..to]), None, &context, &mut tree);
+                assert!(tree.is_ok());
+            }
         });
     });
     group.finish();
@@ -248,5 +300,5 @@ impl AsyncWrite for Memory {
     }
 }
 
-criterion_group!(benches, scanning, decoding);
+criterion_group!(benches, scanning, decoding, hart);
 criterion_main!(benches);

@@ -1,10 +1,10 @@
-//! Independent implementations of Modbus.
+//! Independent implementations of Modbus and HART.
 
 use std::env;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// A Python that can import pymodbus.
+/// A Python that can import pymodbus and hart-protocol.
 ///
 /// # Panics
 ///

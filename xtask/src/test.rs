@@ -7,7 +7,7 @@
 //! | unit tests | beside the code | natively |
 //! | golden files, properties, the bridge | `tests/tests/*.rs` | natively |
 //! | the page and `shared` in a browser | `frontend/tests/wasm_*.rs`, `tests/tests/wasm_*.rs` | headless, as wasm |
-//! | other implementations as peers | `tests/tests/peers.rs`, feature `peers` | natively |
+//! | other implementations as peers | `tests/tests/peers.rs`, `hart_peers.rs`, feature `peers` | natively |
 //! | end to end | `tests/tests/e2e*.rs`, feature `browser` | the built binary and a browser |
 //!
 //! A file `wasm_*.rs` begins with `#![cfg(target_arch = "wasm32")]`, so that it is empty natively.
@@ -69,7 +69,11 @@ fn steps(report: &mut Report) -> Result {
     let peers = report.step("peers", |_| peers::ensure())?;
     report.step("tests against peers", |log| {
         shell::run(&mut native("build", &BINARY_AND_ITS_TESTS))?;
-        log.run_tests("peers", peers.environment(&mut with_binary("peers")))
+        log.run_tests("peers", peers.environment(&mut with_binary("peers")))?;
+        log.run_tests(
+            "hart peers",
+            peers.environment(&mut with_binary("hart_peers")),
+        )
     })?;
     for test in ["e2e", "e2e_ddc", "e2e_dop", "e2e_hart"] {
         report.step("end to end", |log| {
@@ -93,6 +97,8 @@ const BINARY_AND_ITS_TESTS: [&str; 14] = [
     "valvescope",
     "--test",
     "peers",
+    "--test",
+    "hart_peers",
     "--test",
     "e2e",
     "--test",

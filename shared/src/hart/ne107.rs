@@ -100,9 +100,10 @@ pub struct Report {
 
 /// What a device of this family makes of its own status bytes and the map.
 ///
-/// Reading R12: the CVA looks at any alarm, the others at those with a category. Reading R11: the
-/// CVA has no extended device status. Reading R13: a failure is a malfunction on IQ and CMA, and
-/// taken for one on CK.
+/// Reading R12: the CVA looks at any alarm, the others at those with a category. Reading R11: IQ and
+/// CMA fill the extended device status, the others send 0. Reading R13: a failure is a malfunction
+/// on IQ and CMA, and taken for one on CK, which stays open; SI has no alarms (R10), so whatever
+/// stands in its bytes 0 to 3 makes neither.
 #[must_use]
 pub fn report(family: Family, status: &[u8], map: &Map) -> Report {
     let mut report = Report::default();
@@ -114,8 +115,10 @@ pub fn report(family: Family, status: &[u8], map: &Map) -> Report {
             }
             let category = map.get(Map::index(byte, bit));
             report.more_status |= category != 0;
-            report.malfunction |= category == 3;
+            let by_map = matches!(family, Family::Iq | Family::Cma | Family::Ck);
+            report.malfunction |= by_map && category == 3;
             report.extended |= match category {
+                _ if !matches!(family, Family::Iq | Family::Cma) => 0,
                 1 => 0x01,
                 3 => 0x08,
                 4 => 0x10,

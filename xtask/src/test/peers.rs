@@ -1,4 +1,5 @@
-//! Independent implementations that the tests talk to: mbpoll (libmodbus) and pymodbus.
+//! Independent implementations that the tests talk to: mbpoll (libmodbus) and pymodbus for Modbus,
+//! tshark (Wireshark) and hart-protocol for HART.
 
 use crate::{Result, apt, shell};
 use std::path::{Path, PathBuf};
@@ -7,14 +8,17 @@ use std::process::Command;
 /// The version of pymodbus that the tests are written for.
 const PYMODBUS: &str = "3.16.1";
 
+/// The version of hart-protocol that the tests are written for.
+const HART_PROTOCOL: &str = "2023.6.0";
+
 /// The peers of this machine.
 pub struct Peers {
     python: PathBuf,
 }
 
 impl Peers {
-    /// Tells a command where they are: `PEERS_PYTHON` is a Python that can import pymodbus.
-    /// mbpoll is in the search path.
+    /// Tells a command where they are: `PEERS_PYTHON` is a Python that can import pymodbus and
+    /// hart-protocol. mbpoll and tshark are in the search path.
     pub fn environment<'a>(&self, command: &'a mut Command) -> &'a mut Command {
         command
             .env("PEERS_PYTHON", &self.python)
@@ -22,14 +26,17 @@ impl Peers {
     }
 }
 
-/// Finds both peers, and installs what is missing where that is allowed.
+/// Finds all peers, and installs what is missing where that is allowed.
 pub fn ensure() -> Result<Peers> {
     if shell::find(&["mbpoll"], &shell::search_path()).is_none() {
         apt::install(&["mbpoll"])?;
     }
+    if shell::find(&["tshark"], &shell::search_path()).is_none() {
+        apt::install(&["tshark"])?;
+    }
     let folder = shell::target_dir().join("peers");
     let python = folder.join("bin/python");
-    if !has_pymodbus(&python) {
+    if !has_packages(&python) {
         make_venv(&folder)?;
         let pip = [
             "-m",
@@ -39,17 +46,29 @@ pub fn ensure() -> Result<Peers> {
             "--disable-pip-version-check",
         ];
         let mut install = shell::program(&python, pip);
-        shell::run(install.arg(format!("pymodbus[serial]=={PYMODBUS}"))).map_err(|error| {
-            format!("{error}\n  The tests need pymodbus {PYMODBUS}; see why pip cannot get it.")
+        install.arg(format!("pymodbus[serial]=={PYMODBUS}"));
+        install.arg(format!("hart-protocol=={HART_PROTOCOL}"));
+        shell::run(&mut install).map_err(|error| {
+            format!(
+                "{error}\n  The tests need pymodbus {PYMODBUS} and hart-protocol {HART_PROTOCOL}; see why pip cannot get them."
+            )
         })?;
     }
-    println!("mbpoll, and pymodbus {PYMODBUS} in {}", folder.display());
+    println!(
+        "mbpoll, tshark, and pymodbus {PYMODBUS} and hart-protocol {HART_PROTOCOL} in {}",
+        folder.display()
+    );
     Ok(Peers { python })
 }
 
-/// True when this Python has the right version.
-fn has_pymodbus(python: &Path) -> bool {
-    let script = format!("import pymodbus, serial; assert pymodbus.__version__ == '{PYMODBUS}'");
+/// True when this Python has the right versions.
+fn has_packages(python: &Path) -> bool {
+    let script = format!(
+        "import pymodbus, serial, hart_protocol
+from importlib.metadata import version
+assert pymodbus.__version__ == '{PYMODBUS}'
+assert version('hart-protocol') == '{HART_PROTOCOL}'"
+    );
     shell::succeeds(&mut shell::program(python, ["-c", &script]))
 }
 
