@@ -5,9 +5,11 @@ use clap::ValueEnum;
 use shared::device::{Device, Family};
 use shared::dop::export as dop;
 use shared::dop::profile::Profile;
+use shared::icon3000::{self, export};
 use shared::map::export::{
     CSV_HEADER, csv_line, json_line, text_function, text_line, text_members,
 };
+use shared::map::row::Model;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::process::ExitCode;
 
@@ -76,6 +78,9 @@ pub(super) fn run(args: &Args) -> ExitCode {
                 }
             }
         }
+        if map.model == Model::Icon3000v2 {
+            files(args.format, &mut out)?;
+        }
         if args.format == Format::Text {
             writeln!(out, "\n{}, functions", map.name)?;
             for function in map.functions {
@@ -85,6 +90,26 @@ pub(super) fn run(args: &Args) -> ExitCode {
         out.flush()
     };
     ended(print())
+}
+
+/// Every field of every file of function 20.
+fn files(format: Format, out: &mut impl Write) -> io::Result<()> {
+    let mut line = String::new();
+    for file in &icon3000::FILES {
+        if format == Format::Text {
+            writeln!(out, "\n{}", export::heading(file))?;
+        }
+        for field in export::lines().filter(|l| l.file == file) {
+            line.clear();
+            match format {
+                Format::Json => field.write_json(&mut line).map_err(io::Error::other)?,
+                Format::Csv => line.push_str(&field.csv()),
+                Format::Text => line.push_str(&field.text()),
+            }
+            writeln!(out, "{line}")?;
+        }
+    }
+    Ok(())
 }
 
 /// Every command, status bit and unit of a HART device.

@@ -18,6 +18,7 @@ pub mod collect;
 pub mod config;
 pub mod counters;
 pub mod curve;
+pub mod export;
 pub mod health;
 pub mod identity;
 pub mod model;

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "sim")]
 mod device;
+mod views;
 
 use super::model::{FILES, File, Numbering};
 use super::plan::{FileRead, MOST_RECORDS, Span, plan};
