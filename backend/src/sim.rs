@@ -140,6 +140,7 @@ impl Actuators {
                 let model = match d.device {
                     Device::Icon3000v2 => Model::Icon3000v2,
                     Device::Icon3000 => Model::Icon3000,
+                    Device::Icon2000v4 => Model::Icon2000v4,
                     Device::Dop => {
                         let dop = Box::new(Dop::new(&d.tag, setup));
                         return Some((d.unit, Actuator::Dop(dop)));

@@ -52,6 +52,8 @@ pub enum Device {
     /// Not known: registers are shown by address and as raw numbers.
     #[default]
     None,
+    /// Biffi ICON2000v4: inputs, and holding registers 0 to 21.
+    Icon2000v4,
     /// Biffi ICON3000 (Modbus interface firmware before 4.00).
     Icon3000,
     /// Biffi ICON3000v2 (Modbus interface firmware 4.00 or later).
@@ -76,9 +78,10 @@ pub enum Device {
 
 impl Device {
     /// All choices on a Modbus line.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Icon3000v2,
         Self::Icon3000,
+        Self::Icon2000v4,
         Self::Ddc100Mx,
         Self::Ddc100MxB,
         Self::Ddc100Uec,
@@ -93,6 +96,7 @@ impl Device {
     pub const fn key(self) -> &'static str {
         match self {
             Self::None => "none",
+            Self::Icon2000v4 => "icon2000v4",
             Self::Icon3000 => "icon3000",
             Self::Icon3000v2 => "icon3000v2",
             Self::Dop => "dop",
@@ -110,6 +114,7 @@ impl Device {
     pub const fn label(self) -> &'static str {
         match self {
             Self::None => "No device map",
+            Self::Icon2000v4 => "Biffi ICON2000v4",
             Self::Icon3000 => "Biffi ICON3000",
             Self::Icon3000v2 => "Biffi ICON3000v2",
             Self::Dop => "Limitorque DOP",
@@ -137,6 +142,7 @@ impl Device {
         }
         match self {
             Self::None | Self::Dop | Self::Rotork(_) => None,
+            Self::Icon2000v4 => Some(Model::Icon2000v4.map()),
             Self::Icon3000 => Some(Model::Icon3000.map()),
             Self::Icon3000v2 => Some(Model::Icon3000v2.map()),
             Self::Ddc100Mx => Some(Model::Ddc100Mx.map()),
@@ -185,7 +191,7 @@ impl Device {
     /// True for the ICON3000 family.
     #[must_use]
     pub const fn is_icon(self) -> bool {
-        matches!(self, Self::Icon3000 | Self::Icon3000v2)
+        matches!(self, Self::Icon2000v4 | Self::Icon3000 | Self::Icon3000v2)
     }
 
     /// False if the manual says that the device refuses this function code.

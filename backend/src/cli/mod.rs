@@ -65,6 +65,9 @@ pub fn run(cli: Cli) -> ExitCode {
 /// Devices whose map can be applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum DeviceArg {
+    /// Biffi ICON2000v4.
+    #[value(name = "icon2000v4")]
+    Icon2000v4,
     /// Biffi ICON3000.
     Icon3000,
     /// Biffi ICON3000v2.
@@ -98,6 +101,7 @@ enum DeviceArg {
 impl From<DeviceArg> for Device {
     fn from(arg: DeviceArg) -> Self {
         match arg {
+            DeviceArg::Icon2000v4 => Self::Icon2000v4,
             DeviceArg::Icon3000 => Self::Icon3000,
             DeviceArg::Icon3000v2 => Self::Icon3000v2,
             DeviceArg::Dop => Self::Dop,

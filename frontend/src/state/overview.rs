@@ -285,7 +285,8 @@ fn holding(start: u16, count: u16) -> Block {
 /// Source: VCIOM-16345-EN, section 7.4: holding registers 3000 to 3030.
 #[must_use]
 pub fn watched(device: Device) -> Vec<Block> {
-    if device.is_icon() {
+    // An ICON2000v4 has none of these.
+    if device.is_icon() && device != Device::Icon2000v4 {
         vec![holding(3000, 31)]
     } else {
         Vec::new()

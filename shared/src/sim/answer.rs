@@ -3,8 +3,9 @@
 //! The manual does not say in which order the checks are made (reading E81); this is the order of
 //! the Modbus Application Protocol V1.1b3: function, quantity or value, address.
 
-use super::store::{HOLDING, HOLDING_V2, INPUTS, at};
+use super::store::{HOLDING, HOLDING_2000, HOLDING_V2, INPUTS, at};
 use super::{Icon3000, count};
+use crate::map::row::Model;
 
 /// Exception codes (table 50).
 pub(super) const ILLEGAL_FUNCTION: u8 = 1;
@@ -82,7 +83,11 @@ impl Icon3000 {
 
     /// One past the last holding register.
     pub(super) fn end_of_holding(&self) -> u16 {
-        if self.is_v2() { HOLDING_V2 } else { HOLDING }
+        match self.model {
+            Model::Icon2000v4 => HOLDING_2000,
+            _ if self.is_v2() => HOLDING_V2,
+            _ => HOLDING,
+        }
     }
 
     fn read(&self, function: u8, data: &[u8]) -> Outcome {

@@ -6,6 +6,8 @@ use super::clock::Stamp;
 pub(super) const HOLDING_V2: u16 = 3989;
 /// Number of holding registers before it. Reading E56: taken as its end.
 pub(super) const HOLDING: u16 = 3474;
+/// Number of holding registers of the ICON2000v4.
+pub(super) const HOLDING_2000: u16 = 22;
 /// Number of input registers.
 pub(super) const INPUTS: u16 = 369;
 
