@@ -232,6 +232,15 @@ async fn samples_show_what_they_promise() {
     )
     .await;
     look(&page, "handheld").await;
+    // The session begins with an identification; a step leads to its frame.
+    page.click("[data-testid=hart-view][data-view=procedures]")
+        .await;
+    page.wait_for("[data-testid=hart-run]").await;
+    let run = page.text("[data-testid=hart-run]").await;
+    assert!(run.contains("Identification"), "{run}");
+    look(&page, "procedures").await;
+    page.click("[data-testid=hart-step] .link").await;
+    page.wait_for("[data-testid=frame-list]").await;
 
     choose(&page, "sample", "hart-damaged").await;
     until(

@@ -18,7 +18,7 @@
 //!
 //! | where | hooks |
 //! |---|---|
-//! | decode | `hart-view` (`data-view`: `frames`, `map`), and those of the decode page |
+//! | decode | `hart-view` (`data-view`: `frames`, `procedures`, `map`), `hart-procedures`, `hart-run`, `hart-step` (`data-key`), `hart-open-run`, and those of the decode page |
 //! | tabs | `hart-tab` (`data-tab`) |
 //! | a value | `hart-value` (`data-key`: command and field), `value-facts` |
 //! | overview | `hart-overview`, `hart-forced`, `hart-position`, `hart-answered`, `hart-ne107`, `hart-set` (`data-key`), `hart-trend` |

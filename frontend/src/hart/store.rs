@@ -383,6 +383,7 @@ impl Store {
         let id = self.next_id();
         let total = u32::try_from(keys.len()).unwrap_or(u32::MAX);
         self.job.set(Job::new(id, total));
+        self.unit.update(|unit| unit.ask(keys));
         self.send(&HartAsk::Read {
             id,
             device: self.tag.get_untracked(),

@@ -4,6 +4,7 @@ pub mod bus;
 pub mod map;
 pub mod overview;
 pub mod status;
+pub mod steps;
 pub mod values;
 
 use shared::map::row::{Reading, Settled};

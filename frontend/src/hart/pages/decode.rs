@@ -5,6 +5,7 @@ use std::sync::Arc;
 use leptos::prelude::*;
 use shared::device::Device;
 use shared::frame::Framing;
+use shared::problem::Severity;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::map::MapView;
@@ -13,8 +14,10 @@ use crate::components::drawn::{Act, Draw, Drawn};
 use crate::decode_store::{DecodeStore, Input};
 use crate::erased::{effect, memo};
 use crate::guest::Guest;
+use crate::hart::markup;
+use crate::hart::state::steps::Steps;
 use crate::markup::Markup;
-use crate::markup::decode;
+use crate::markup::decode::{found as draw_found, progress_bar};
 use crate::state::samples::by_key;
 
 /// The frames of an input that the page handed on.
@@ -48,21 +51,48 @@ pub(super) fn DecodePage() -> impl IntoView {
     let found: Draw = Arc::new(move |html: &mut Markup| {
         store.work.with(|work| {
             if let Some(work) = work {
-                decode::found(html, work);
+                draw_found(html, work);
             }
         });
         if let Some(progress) = store.progress.get() {
-            decode::progress_bar(html, &progress);
+            progress_bar(html, &progress);
         }
     });
     let on_act = Callback::new(move |_: Act| store.cancel());
+    // What goes on over several frames.
+    let followed = memo(move || {
+        store.epoch.track();
+        store.work.with(|work| {
+            work.as_ref()
+                .map_or_else(Steps::default, |w| Steps::of(&w.session))
+        })
+    });
+    let steps: Draw = Arc::new(move |html: &mut Markup| {
+        followed.with(|steps| markup::steps::steps(html, steps));
+    });
     // The condensed status map needs no input.
-    let map = RwSignal::new(guest.place.with_untracked(|p| p.get("view") == Some("map")));
+    let view = RwSignal::new(
+        guest
+            .place
+            .with_untracked(|p| p.get("view").unwrap_or_default().to_owned()),
+    );
+    let on_step = Callback::new(move |act: Act| {
+        let frame = act.element.get_attribute("data-frame");
+        if let Some(frame) = frame.and_then(|f| f.parse().ok()) {
+            store.cursor.set(Some(frame));
+            view.set(String::new());
+        }
+    });
     let tabs: Draw = Arc::new(move |html: &mut Markup| {
-        for (act, words, on) in [
-            ("frames", "Frames", !map.get()),
-            ("map", "Condensed status map", map.get()),
+        let now = view.get();
+        let (runs, warns) = followed.with(|steps| (steps.runs().len(), steps.warns()));
+        let procedures = format!("Procedures ({runs})");
+        for (act, words) in [
+            ("frames", "Frames"),
+            ("procedures", procedures.as_str()),
+            ("map", "Condensed status map"),
         ] {
+            let on = act == now || (now.is_empty() && act == "frames");
             html.open(
                 "button",
                 &[
@@ -74,20 +104,33 @@ pub(super) fn DecodePage() -> impl IntoView {
                     ("aria-selected", if on { "true" } else { "false" }),
                 ],
             );
+            if act == "procedures" && warns {
+                html.severity(Severity::Warning);
+            }
             html.text(words).close("button");
         }
     });
-    let on_tab = Callback::new(move |act: Act| map.set(act.name == "map"));
-    let body = super::part(move || {
-        if map.get() {
-            view! { <div class="hart-page"><MapView unit=None/></div> }.into_any()
+    let on_tab = Callback::new(move |act: Act| {
+        let name = if act.name == "frames" {
+            String::new()
         } else {
-            view! {
-                <Drawn class="hart-found" draw=Arc::clone(&found) on_act=on_act/>
-                <DecodePanes/>
-            }
-            .into_any()
+            act.name
+        };
+        view.set(name);
+    });
+    let body = super::part(move || match view.get().as_str() {
+        "map" => view! { <div class="hart-page"><MapView unit=None/></div> }.into_any(),
+        "procedures" => view! {
+            <div class="hart-page" data-testid="hart-procedures">
+                <Drawn class="hart-runs" draw=Arc::clone(&steps) on_act=on_step/>
+            </div>
         }
+        .into_any(),
+        _ => view! {
+            <Drawn class="hart-found" draw=Arc::clone(&found) on_act=on_act/>
+            <DecodePanes/>
+        }
+        .into_any(),
     });
     view! {
         <Drawn class="tabs" role="tablist" label="HART" draw=tabs on_act=on_tab/>

@@ -4,6 +4,7 @@ pub mod condition;
 pub mod map;
 pub mod plan;
 pub mod site;
+pub mod steps;
 pub mod summary;
 pub mod trend;
 pub mod unit;

@@ -103,6 +103,8 @@ pub struct Unit {
     pub last: Option<(Outcome, String)>,
     /// The last device status byte with its time.
     pub status: Option<(u8, u64)>,
+    /// What was asked once and is not over.
+    pending: Vec<Key>,
 }
 
 impl Unit {
@@ -118,7 +120,13 @@ impl Unit {
             answered_us: None,
             last: None,
             status: None,
+            pending: Vec::new(),
         }
+    }
+
+    /// Notes what is asked, to tell the answers apart whose request never went out.
+    pub fn ask(&mut self, keys: &[Key]) {
+        self.pending = keys.to_vec();
     }
 
     /// Takes an exchange in: request and response as on the line, from delimiter to check byte.
@@ -135,7 +143,13 @@ impl Unit {
         let session = exchange(request, response);
         let asked = Shown::of(&session, 0, device);
         let answer = Shown::of(&session, 1, device).filter(|_| !response.is_empty());
-        let key = (command, asked.as_ref().map_or_else(String::new, data_of));
+        // A command that was refused before it was sent has no request to tell its data.
+        let at = self.pending.iter().position(|key| key.0 == command);
+        let waited = at.map(|at| self.pending.remove(at));
+        let key = match &asked {
+            Some(asked) if !request.is_empty() => (command, data_of(asked)),
+            _ => waited.unwrap_or_else(|| plain(command)),
+        };
         if let Some(answer) = &answer {
             self.answered_us = Some(at_us);
             if let Some(status) = raw_of(answer, "device_status") {
@@ -369,6 +383,16 @@ pub(crate) mod tests {
         assert!(reading.good.is_some(), "the last value stays");
         assert_eq!(reading.bad.as_ref().unwrap().outcome, Outcome::Silence);
         assert_eq!(unit.answered_us, Some(9));
+    }
+
+    #[test]
+    fn what_never_went_out_is_known_as_asked() {
+        let mut unit = unit(&[]);
+        let key = (523, "0040".to_owned());
+        unit.ask(core::slice::from_ref(&key));
+        unit.take(&[], &[], 523, (Outcome::Down, "no line"), (1, 0, 0));
+        let bad = unit.reading(&key).unwrap().bad.as_ref().unwrap();
+        assert_eq!(bad.text, "no line");
     }
 
     #[test]
