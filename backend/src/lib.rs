@@ -23,4 +23,5 @@ pub mod listen;
 pub mod plant;
 pub mod serial;
 pub mod sim;
+pub mod snapshot;
 pub mod ws;

@@ -4,20 +4,27 @@
 mod common;
 
 use axum::extract::ws::Utf8Bytes;
-use backend::bus::{ClientId, Command, Outlet};
+use backend::bus::board::Board;
+use backend::bus::recorder::Recorder;
+use backend::bus::{self, ClientId, Command, Outlet, Plug};
+use backend::clock::Clock;
 use backend::config::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode};
 use backend::plant::Plant;
+use backend::sim::{Actuators, Pace, serve_rtu};
+use backend::snapshot::{Taken, take};
 use common::{Page, WAIT, serve};
 use shared::decode::pdu_of;
 use shared::device::Device;
 use shared::encode::frame;
 use shared::frame::Framing;
+use shared::icon3000::snapshot::{Snapshot, diff, parse};
+use shared::map::row::Model;
 use shared::proto::{IconAsk, IconNews, IconStep, Outcome, ToBackend};
 use shared::render::hex;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::net::TcpListener;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 use tokio_serial::{SerialPort, SerialStream};
 
@@ -242,4 +249,63 @@ async fn through_a_page() {
         panic!("an exchange");
     };
     assert!(text.contains("at most 256"), "{text}");
+}
+
+/// A whole device over a line of 9600 8E1 whose time is simulated.
+async fn whole(device: Device, model: Model) -> (Taken, Duration) {
+    let devices = [DeviceConfig::simple("XV-1", device, UNIT)];
+    let line = LineConfig::Serial {
+        framing: Framing::Rtu,
+        port: "simulated".into(),
+        baud: 9600,
+        mode: Mode::parse("8E1").unwrap(),
+    };
+    let (clock, activity) = (Clock::start(), watch::Sender::new(0));
+    let actuators = Actuators::new(&devices, clock);
+    let plug = Plug::Stream(Box::new(move || {
+        let (near, far) = tokio::io::duplex(4096);
+        let actuators = actuators.clone();
+        tokio::spawn(async move { serve_rtu(far, &actuators, Pace::of(9600)).await });
+        Ok(Box::new(near))
+    }));
+    let bus = config(line).buses.remove(0);
+    let board = Board::new(activity.clone());
+    let recorder = Recorder::new("a", clock, activity);
+    let handle = bus::start(bus, &devices, plug, clock, board, recorder);
+    let began = tokio::time::Instant::now();
+    let empty = Snapshot::new(model, UNIT, "XV-1");
+    let taken = take(&handle, 0, empty, |_, _, _| {}).await.unwrap();
+    (taken, began.elapsed())
+}
+
+/// Every character of the exchanges, and the silences that the standard demands, by hand from the
+/// number of bytes: 11 bits a character, 3.5 characters after each frame.
+#[tokio::test(start_paused = true)]
+async fn a_snapshot_takes_little_more_than_the_wire() {
+    for (device, model) in [
+        (Device::Icon3000v2, Model::Icon3000v2),
+        (Device::Icon3000, Model::Icon3000),
+    ] {
+        let (Taken { snapshot, wire }, took) = whole(device, model).await;
+        let bytes = f64::from(wire.request_bytes + wire.response_bytes);
+        let frames = f64::from(wire.exchanges * 2);
+        let ideal = (bytes + 3.5 * frames) * 11.0 / 9600.0;
+        let ratio = took.as_secs_f64() / ideal;
+        println!(
+            "{device:?}: {} exchanges, {:.1} s, the wire alone {ideal:.1} s, {:.1} %",
+            wire.exchanges,
+            took.as_secs_f64(),
+            100.0 * ratio
+        );
+        assert!((1.0..=1.1).contains(&ratio), "{ratio}");
+        assert!(snapshot.failures.is_empty(), "{:?}", snapshot.failures);
+        assert_eq!(snapshot.identity.is_some(), true);
+        assert_eq!(snapshot.files.is_empty(), model == Model::Icon3000);
+        // What is written is read back the same, and the same is no change.
+        let (back, problems) = parse(snapshot.to_text().as_bytes());
+        assert!(problems.is_empty(), "{problems:?}");
+        let back = back.unwrap();
+        assert!(diff(&snapshot, &back).is_empty());
+        assert_eq!(back.to_text(), snapshot.to_text());
+    }
 }

@@ -172,6 +172,71 @@ fn pymodbus_reads_the_simulator_over_a_serial_line() {
     check_answers(&pymodbus_asks("rtu", &theirs));
 }
 
+/// What pymodbus reads of the files, counters and report of the simulated ICON3000v2, checked
+/// against VCIOM-16345-EN, section 8.
+fn check_files(kind: &str, place: &str) {
+    let output = python()
+        .arg(script("icon.py"))
+        .args([kind, place])
+        .output()
+        .expect("python starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}{error}");
+    let answers: Vec<Value> = text
+        .lines()
+        .map(|l| serde_json::from_str(l).expect("JSON lines"))
+        .collect();
+    let of = |ask: &str| {
+        let found = answers.iter().find(|a| a["ask"] == ask);
+        found.unwrap_or_else(|| panic!("nothing about {ask}: {text}"))
+    };
+    // Six bytes an entry: two words of seconds since 2000, and what happened.
+    for log in ["alarms", "warnings"] {
+        let entries = of(log)["entries"].as_array().expect("entries");
+        assert!(!entries.is_empty(), "{log}");
+        for entry in entries {
+            assert_eq!(entry.as_array().map(Vec::len), Some(3), "{entry}");
+        }
+    }
+    // Five card reports of 32 bytes came in one answer.
+    let reports = of("reports")["groups"].as_array().expect("groups");
+    assert_eq!(reports.len(), 5);
+    for report in reports {
+        assert_eq!(report.as_array().map(Vec::len), Some(16), "{report}");
+    }
+    let curve = of("curve")["groups"].as_array().expect("groups");
+    assert_eq!(curve[0].as_array().map(Vec::len), Some(108));
+    assert!(of("no such file")["groups"].is_u64(), "an exception");
+    // Five reads, one that is refused, and the question itself.
+    let count = |key: &str| of("messages")[key].as_u64().expect("a count");
+    assert_eq!(count("after").wrapping_sub(count("before")) & 0xFFFF, 7);
+    if kind == "tcp" {
+        let report = of("report")["hex"]
+            .as_str()
+            .expect("hexadecimal")
+            .to_owned();
+        let name: String = "Biffi ICON3000"
+            .bytes()
+            .map(|b| format!("{b:02x}"))
+            .collect();
+        assert!(report.contains(&name), "{report}");
+    }
+}
+
+#[test]
+fn pymodbus_reads_files_counters_and_the_report_over_tcp() {
+    let (_simulator, port) = simulator();
+    check_files("tcp", &port.to_string());
+}
+
+#[test]
+fn pymodbus_reads_files_and_counters_over_a_serial_line() {
+    let (_cable, ours, theirs) = cable();
+    let _simulator = serial_simulator(&ours);
+    check_files("rtu", &theirs);
+}
+
 /// mbpoll counts registers from 1: number 45 is address 44.
 #[test]
 fn mbpoll_reads_the_simulator() {

@@ -222,10 +222,10 @@ impl Actor {
         match command {
             Command::Read {
                 device,
-                read,
+                query,
                 reply,
             } => match self.units.get_mut(device) {
-                Some(unit) => unit.once.push_back((read, reply)),
+                Some(unit) => unit.once.push_back((query, reply)),
                 None => {
                     let text = "there is no such device".to_owned();
                     reply(Report::failed(Outcome::Refused, text));

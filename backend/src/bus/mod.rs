@@ -43,8 +43,8 @@ pub enum Command {
     Read {
         /// Index of the device on this bus.
         device: usize,
-        /// What to read.
-        read: Read,
+        /// What to ask.
+        query: query::Query,
         /// Gets the outcome.
         reply: Reply,
     },
@@ -198,7 +198,8 @@ impl Handle {
     }
 
     /// Reads once and waits for the outcome.
-    pub async fn read(&self, device: usize, read: Read) -> Report {
+    pub async fn read(&self, device: usize, query: impl Into<query::Query>) -> Report {
+        let query = query.into();
         let (sender, receiver) = oneshot::channel();
         let reply: Reply = Box::new(move |report| {
             // Nobody waits any more: then nobody needs it.
@@ -206,7 +207,7 @@ impl Handle {
         });
         let command = Command::Read {
             device,
-            read,
+            query,
             reply,
         };
         self.ask(command).await;

@@ -1,5 +1,6 @@
 //! What a device can be asked without changing anything in it, as PDUs.
 
+use shared::address::{Address, Table};
 use shared::encode::Read;
 use shared::icon3000::FileRead;
 use shared::pdu::length::report;
@@ -21,6 +22,27 @@ pub enum Query {
 }
 
 impl Query {
+    /// Reads a request PDU; `None` if it is none of these, and so none that may be sent.
+    #[must_use]
+    pub fn of_pdu(pdu: &[u8]) -> Option<Self> {
+        match *pdu {
+            [17] => Some(Self::Identity),
+            [8, high, low, 0, 0] => {
+                let sub = u16::from_be_bytes([high, low]);
+                is_counter(sub).then_some(Self::Diagnostic(sub))
+            }
+            [function, s0, s1, c0, c1] => {
+                let table = Table::ALL
+                    .into_iter()
+                    .find(|t| t.read_function() == function)?;
+                let start = Address::new(u16::from_be_bytes([s0, s1]));
+                let read = Read::new(table, start, u16::from_be_bytes([c0, c1]))?;
+                Some(Self::Read(read))
+            }
+            _ => FileRead::of_pdu(pdu).map(Self::File),
+        }
+    }
+
     /// The request PDU.
     #[must_use]
     pub fn pdu(&self) -> Vec<u8> {
@@ -158,6 +180,29 @@ mod tests {
         assert!(Query::Identity.is_answered_by(&report(3, 5)));
         assert!(!Query::Identity.is_answered_by(&report(3, 6)));
         assert!(!Query::Identity.is_answered_by(&[17]));
+    }
+
+    #[test]
+    fn requests_come_back() {
+        let read = Read::new(Table::Input, Address::new(7), 3).unwrap();
+        for query in [
+            Query::Read(read),
+            file(&[(2, 0, 4), (5300, 0, 16)]),
+            Query::Identity,
+            Query::Diagnostic(14),
+        ] {
+            assert_eq!(Query::of_pdu(&query.pdu()), Some(query));
+        }
+        for pdu in [
+            &[6, 0, 0, 0, 1][..],
+            &[5, 0, 0, 0xFF, 0],
+            &[8, 0, 10, 0, 0],
+            &[3, 0, 0, 0, 0],
+            &[21, 9, 6, 0, 2, 0, 0, 0, 1, 0, 1],
+            &[],
+        ] {
+            assert_eq!(Query::of_pdu(pdu), None, "{pdu:?}");
+        }
     }
 
     #[test]

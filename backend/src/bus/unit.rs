@@ -9,7 +9,6 @@ use super::schedule::Plan;
 use super::{ClientId, Fault, Reply};
 use crate::clock::Clock;
 use shared::capture::Micros;
-use shared::encode::Read;
 use shared::proto::Outcome;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -90,7 +89,7 @@ pub struct Unit {
     /// What is read again and again.
     pub plan: Plan,
     /// What is read once.
-    pub once: VecDeque<(Read, Reply)>,
+    pub once: VecDeque<(Query, Reply)>,
     /// What is to be repeated.
     pub again: Option<Job>,
     /// Its diagnostic objects, if it has any.
@@ -204,9 +203,8 @@ impl Unit {
                 return Some(job);
             }
         }
-        if let Some((read, reply)) = self.once.pop_front() {
-            let ask = Ask::Query(read.into());
-            return Some(Job::new(ask, retries, Origin::Once(reply)));
+        if let Some((query, reply)) = self.once.pop_front() {
+            return Some(Job::new(Ask::Query(query), retries, Origin::Once(reply)));
         }
         // Watches and what programs of a page ask for take turns.
         let watch = self

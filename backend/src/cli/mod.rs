@@ -1,10 +1,12 @@
 //! The command line.
 
 mod decode;
+mod diff;
 mod dop;
 mod maps;
 mod serve;
 mod simulate;
+mod snapshot;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use shared::device::{Device, Family};
@@ -43,6 +45,10 @@ enum Verb {
     Decode(decode::Args),
     /// Decode the registers of a diagnostic object of a Limitorque MX or QX actuator.
     Dop(dop::Args),
+    /// Save a whole ICON3000 as one file: registers, identity, counters, logs, curves.
+    Snapshot(snapshot::Args),
+    /// Compare two snapshots by meaning.
+    Diff(diff::Args),
     /// Print the register map of a device.
     Maps(maps::Args),
     /// Be an ICON3000 actuator that other programs can read.
@@ -57,6 +63,8 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Verb::Serve(args)) => serve::run(&args),
         Some(Verb::Decode(args)) => decode::run(&args),
         Some(Verb::Dop(args)) => dop::run(&args),
+        Some(Verb::Snapshot(args)) => snapshot::run(&args),
+        Some(Verb::Diff(args)) => diff::run(&args),
         Some(Verb::Maps(args)) => maps::run(&args),
         Some(Verb::Simulate(args)) => simulate::run(&args),
     }

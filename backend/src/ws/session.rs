@@ -354,7 +354,7 @@ impl Page<'_> {
         });
         let command = Command::Read {
             device,
-            read,
+            query: read.into(),
             reply,
         };
         bus.ask(command).await;

@@ -1,6 +1,7 @@
 //! What pages ask for: read between two polls, so that it holds up nobody.
 
 use super::Actor;
+use crate::bus::query::Query;
 use crate::bus::{Command, Reply, Report, words};
 use shared::ddc100::HostPort;
 use shared::ddc100::poller::Other;
@@ -34,9 +35,13 @@ impl Actor {
         match command {
             Command::Read {
                 device,
-                read,
+                query,
                 reply,
             } => {
+                let Query::Read(read) = query else {
+                    let text = "a field unit has no files, report or counters".to_owned();
+                    return reply(Report::failed(Outcome::Refused, text));
+                };
                 let why = if device >= self.units.len() {
                     "there is no such device"
                 } else if self.jobs.len() >= MAX_JOBS {

@@ -73,7 +73,7 @@ impl Page<'_> {
         });
         let command = Command::Read {
             device,
-            read,
+            query: read.into(),
             reply,
         };
         handle.ask(command).await;
