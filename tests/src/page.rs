@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 
 use shared::capture::{Capture, Direction, Micros};
 use shared::frame::{Framing, Role};
-use shared::proto::{Block, DopAsk, DopNews, Outcome, ToBackend, ToPage, VERSION, Way};
+use shared::proto::{
+    Block, DopAsk, DopNews, IconAsk, IconNews, IconStep, Outcome, ToBackend, ToPage, VERSION, Way,
+};
 use shared::session::Session;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
@@ -21,6 +23,8 @@ pub struct Page {
     session: Session,
     /// News about diagnostic objects that nobody has looked at yet.
     news: VecDeque<DopNews>,
+    /// News about an ICON3000 that nobody has looked at yet.
+    icon: VecDeque<IconNews>,
 }
 
 impl Page {
@@ -41,6 +45,7 @@ impl Page {
             socket,
             session: Session::new(framing),
             news: VecDeque::new(),
+            icon: VecDeque::new(),
         };
         page.send(&ToBackend::Hello { version: VERSION });
         page.send(&ToBackend::Subscribe {
@@ -75,7 +80,7 @@ impl Page {
         }
     }
 
-    /// The next message; `None` if it was about diagnostic objects, and is kept.
+    /// The next message; `None` if it was for a program of the page, and is kept.
     fn receive_any(&mut self) -> Option<ToPage> {
         loop {
             let text = match self.socket.read().expect("a message in time") {
@@ -85,6 +90,10 @@ impl Page {
             };
             if let Some(news) = DopNews::from_text(&text) {
                 self.news.push_back(news);
+                return None;
+            }
+            if let Some(news) = IconNews::from_text(&text) {
+                self.icon.push_back(news);
                 return None;
             }
             let message: ToPage = serde_json::from_str(&text).expect("a message of the protocol");
@@ -167,6 +176,35 @@ impl Page {
                 DopNews::Done { id: ID, .. } => return found,
                 DopNews::Progress { .. } | DopNews::Profile { .. } => {}
                 news => found.push(news),
+            }
+        }
+    }
+
+    /// Reads files, identity or counters of a device; the response PDU of each request, and how it
+    /// ended.
+    ///
+    /// # Panics
+    ///
+    /// If they are not read in time.
+    pub fn steps(&mut self, device: &str, steps: &[IconStep]) -> Vec<(Outcome, String)> {
+        const ID: u32 = 79;
+        self.send(&ToBackend::Icon(IconAsk::Read {
+            id: ID,
+            device: device.to_owned(),
+            steps: steps.to_vec(),
+        }));
+        let (start, mut found) = (Instant::now(), Vec::new());
+        loop {
+            match self.icon.pop_front() {
+                Some(IconNews::Done { id: ID, .. }) => return found,
+                Some(IconNews::Exchange {
+                    outcome, response, ..
+                }) => found.push((outcome, response)),
+                Some(_) => {}
+                None => {
+                    assert!(start.elapsed() < PATIENCE, "no news within {PATIENCE:?}");
+                    let _other = self.receive_any();
+                }
             }
         }
     }

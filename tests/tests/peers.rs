@@ -8,7 +8,7 @@ use std::process::Command;
 
 use serde_json::{Value, json};
 use shared::frame::Framing;
-use shared::proto::{Block, DopNews, Outcome, TableName};
+use shared::proto::{Block, DopNews, IconStep, Outcome, TableName};
 use tests::page::Page;
 use tests::peers::{mbpoll, python};
 use tests::process::Process;
@@ -348,12 +348,39 @@ fn check_reads(server: &Server, framing: Framing) {
     );
 }
 
+/// Reads a file, the report and a counter of the peer. Its file is a text of 20 bytes, whichever is
+/// asked for; its report has the usual form, of one byte for who it is.
+fn check_steps(server: &Server, framing: Framing) {
+    let mut page = Page::open(server.address(), "peer", framing);
+    let file = |count| IconStep::File {
+        file: 4,
+        start: 1,
+        count,
+    };
+    let found = page.steps("P-7", &[file(10), IconStep::Identity]);
+    assert_eq!(found.len(), 2, "{found:?}");
+    let text: String = b"SERVER DUMMY RECORD."
+        .iter()
+        .map(|b| format!("{b:02X}"))
+        .collect();
+    assert_eq!(found[0], (Outcome::Ok, format!("14161506{text}")));
+    assert_eq!(found[1].0, Outcome::Ok, "{found:?}");
+    assert!(found[1].1.starts_with("11"), "{found:?}");
+    // Twenty bytes are no answer to a question for ten.
+    let found = page.steps("P-7", &[file(5)]);
+    assert_eq!(found[0].0, Outcome::Damaged, "{found:?}");
+    let found = page.steps("P-7", &[IconStep::Diagnostic { sub_function: 14 }]);
+    assert_eq!(found[0].0, Outcome::Ok, "{found:?}");
+    assert!(found[0].1.starts_with("08000E"), "{found:?}");
+}
+
 #[test]
 fn our_backend_reads_pymodbus_over_tcp() {
     let port = free_port();
     let bus = format!("kind = \"tcp\"\nhost = \"127.0.0.1:{port}\"");
     let (_device, server, file) = backend_beside("tcp", &port.to_string(), &bus);
     check_reads(&server, Framing::Tcp);
+    check_steps(&server, Framing::Tcp);
     std::fs::remove_file(file).expect("it was there");
 }
 
@@ -363,6 +390,7 @@ fn our_backend_reads_pymodbus_over_rtu() {
     let bus = format!("kind = \"rtu\"\nport = \"{ours}\"\nbaud = 38400\nmode = \"8N1\"");
     let (_device, server, file) = backend_beside("rtu", &theirs, &bus);
     check_reads(&server, Framing::Rtu);
+    check_steps(&server, Framing::Rtu);
     std::fs::remove_file(file).expect("it was there");
 }
 
@@ -372,6 +400,7 @@ fn our_backend_reads_pymodbus_over_ascii() {
     let bus = format!("kind = \"ascii\"\nport = \"{ours}\"\nbaud = 38400\nmode = \"8N1\"");
     let (_device, server, file) = backend_beside("ascii", &theirs, &bus);
     check_reads(&server, Framing::Ascii);
+    check_steps(&server, Framing::Ascii);
     std::fs::remove_file(file).expect("it was there");
 }
 
