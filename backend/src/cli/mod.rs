@@ -195,3 +195,15 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 fn path_or_stdin(path: Option<&PathBuf>) -> Option<&PathBuf> {
     path.filter(|p| p.as_os_str() != "-")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// No two options or groups of a command have the same name, and what one asks for exists.
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+}
