@@ -92,6 +92,7 @@ impl Store {
             move || {
                 store.now.set(wall_now());
                 store.now_us.set(guest.now_us());
+                store.give_up();
             },
             Duration::from_secs(1),
         );
@@ -186,7 +187,9 @@ impl Store {
         if let Some(news) = wire::icon::read(text) {
             if *device_of(&news) == tag {
                 let mut next = None;
-                self.site.update(|site| next = site.hear(&news, self.next));
+                let now = self.guest.now_us();
+                self.site
+                    .update(|site| next = site.hear(&news, self.next, now));
                 if let Some(ask) = next {
                     self.send(&ask);
                 }
@@ -202,6 +205,18 @@ impl Store {
             let device = found.and_then(|d| Some((Device::from_key(&d.kind)?, d.unit)));
             let start = wall_ms.saturating_sub(now_us / 1000);
             self.site.update(|site| site.greeted(device, start));
+        }
+    }
+
+    /// Ends a read of which nothing is heard any more.
+    fn give_up(self) {
+        let now = self.guest.now_us();
+        let stuck = |site: &Site| site.job.as_ref().is_some_and(|job| job.is_stuck(now));
+        if self.site.with_untracked(stuck) {
+            self.cancel();
+            self.site.update(|site| {
+                site.stop("The bridge did not answer for a minute, so the read was ended.");
+            });
         }
     }
 
@@ -316,9 +331,14 @@ impl Store {
 impl Site {
     /// The connection is gone: nothing of what was asked comes back.
     pub fn lost(&mut self) {
+        self.stop("The connection was lost.");
+    }
+
+    /// Ends the read under way, and says why; it can be gone on with.
+    fn stop(&mut self, why: &str) {
         if let Some(job) = self.job.take() {
             self.broken = Some((job.wanted.clone(), job.since()));
-            self.last = "The connection was lost.".to_owned();
+            why.clone_into(&mut self.last);
         }
     }
 
@@ -337,8 +357,9 @@ impl Site {
     }
 
     /// Takes news in; what to ask for next, if something is still missing.
-    fn hear(&mut self, news: &IconNews, next: StoredValue<u32>) -> Option<IconAsk> {
+    fn hear(&mut self, news: &IconNews, next: StoredValue<u32>, now: u64) -> Option<IconAsk> {
         let job = self.job.as_mut().filter(|job| job.id == id_of(news))?;
+        job.touch(now);
         if !job.hear(news, &mut self.dossier) {
             return None;
         }

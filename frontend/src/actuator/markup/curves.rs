@@ -147,7 +147,7 @@ fn ticked(html: &mut Markup, key: &str, words: &str, on: bool) {
 }
 
 /// What was noted at the strokes that are shown, beside each other.
-pub fn numbers(html: &mut Markup, traces: &[&Trace], _all: &[Trace]) {
+pub fn numbers(html: &mut Markup, traces: &[&Trace]) {
     if traces.is_empty() {
         return;
     }
@@ -161,7 +161,10 @@ pub fn numbers(html: &mut Markup, traces: &[&Trace], _all: &[Trace]) {
         .text("Stroke")
         .close("th");
     for trace in traces {
-        html.open("th", &[("scope", "col"), ("title", &trace.source)]);
+        html.open(
+            "th",
+            &[("scope", "col"), ("title", &trace.curve.source.to_string())],
+        );
         html.text(&trace.label).close("th");
     }
     html.close("tr").close("thead").open("tbody", &[]);
@@ -175,8 +178,8 @@ pub fn numbers(html: &mut Markup, traces: &[&Trace], _all: &[Trace]) {
         "Motor",
     ] {
         row(html, name, traces, |t| {
-            let fact = t.facts.iter().find(|f| f.0 == name);
-            fact.map_or((String::new(), ""), |f| (f.1.clone(), f.2))
+            let fact = t.facts().into_iter().find(|f| f.0 == name);
+            fact.map_or((String::new(), ""), |f| (f.1, f.2))
         });
     }
     html.close("tbody").close("table").close("div");
@@ -337,7 +340,7 @@ mod tests {
         let html = drawn(|html| list(html, &traces, &both));
         assert!(html.contains("data-key=\"opening\" data-testid=\"preset\" aria-pressed=\"true\""));
         let all: Vec<_> = traces.iter().collect();
-        let html = drawn(|html| numbers(html, &all, &traces));
+        let html = drawn(|html| numbers(html, &all));
         assert!(
             html.contains("Stroke time") && html.contains("file 1001"),
             "{html}"

@@ -1,11 +1,12 @@
 //! What is wrong with the device, why it counts as that, and what to check.
 
+use shared::icon3000::health::{Finding, Health, health as judge};
 use shared::icon3000::model::{Meaning, Ne107};
-use shared::map::row::Row;
 
 use super::heading;
 use crate::actuator::state::dossier::Dossier;
-use crate::actuator::state::health::{Condition, Past, conditions, past, unread, worst};
+use crate::actuator::state::health::{Past, past};
+use crate::actuator::state::saved::model;
 use crate::chart::time::stamp;
 use crate::dop::markup::sign_of;
 use crate::format::count;
@@ -17,11 +18,13 @@ const PAST: usize = 8;
 
 /// The health of a device. `logs` is the address of its logs.
 pub fn health(html: &mut Markup, dossier: &Dossier, logs: &str) {
-    let conditions = conditions(dossier);
-    let unread = unread(dossier);
-    summary(html, &conditions, &unread);
+    let Some(model) = model(dossier.device) else {
+        return;
+    };
+    let health = judge(model, &dossier.image);
+    summary(html, &health);
     let mut last = None;
-    for condition in &conditions {
+    for condition in &health.findings {
         let status = condition.meaning.status;
         if last != Some(status) {
             if last.is_some() {
@@ -31,7 +34,7 @@ pub fn health(html: &mut Markup, dossier: &Dossier, logs: &str) {
             heading(html, status.label(), "NAMUR NE 107");
             html.open("ul", &[("class", "icon-conditions")]);
         }
-        one(html, condition);
+        one(html, dossier, condition);
     }
     if last.is_some() {
         html.close("ul");
@@ -43,16 +46,17 @@ pub fn health(html: &mut Markup, dossier: &Dossier, logs: &str) {
 }
 
 /// The state of the device in one line.
-fn summary(html: &mut Markup, conditions: &[Condition], unread: &[&'static Row]) {
+fn summary(html: &mut Markup, health: &Health) {
+    let unread = &health.unread;
     html.open(
         "p",
         &[("class", "icon-verdict"), ("data-testid", "health-sum")],
     );
-    match worst(conditions) {
+    match health.worst() {
         Some(status) => {
             sign(html, sign_of(status), "24");
             html.text(" ").node("b", "", status.label());
-            let n = u64::try_from(conditions.len()).unwrap_or(0);
+            let n = u64::try_from(health.findings.len()).unwrap_or(0);
             html.text(&format!(" · {}", count(n, "condition")));
         }
         None if unread.is_empty() => {
@@ -75,7 +79,7 @@ fn summary(html: &mut Markup, conditions: &[Condition], unread: &[&'static Row])
 }
 
 /// One condition with its reason and what to check.
-fn one(html: &mut Markup, condition: &Condition) {
+fn one(html: &mut Markup, dossier: &Dossier, condition: &Finding) {
     let meaning = condition.meaning;
     html.open(
         "li",
@@ -89,14 +93,12 @@ fn one(html: &mut Markup, condition: &Condition) {
     html.open("div", &[]);
     html.node("b", "", meaning.label);
     told(html, meaning);
-    let row = condition.row;
+    let words = dossier.image.bytes(condition.row).unwrap_or_default();
     let place = format!(
-        "{} {} bit {} · raw {:04X} · {}",
-        row.table.label(),
-        row.address,
-        meaning.value,
-        condition.word,
-        row.source
+        "{} · raw {} · {}",
+        condition.place(),
+        shared::render::hex(&words),
+        condition.source()
     );
     html.node("p", "quiet proof", &place)
         .close("div")
@@ -162,7 +164,7 @@ mod tests {
             "data-status=\"F\"",
             "Check: ",
             "table 5",
-            "3010 bit",
+            "HR 3010, bit",
             "health-past",
             "Not read, so not known",
         ] {

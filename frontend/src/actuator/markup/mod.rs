@@ -7,8 +7,10 @@ pub mod health;
 pub mod identity;
 pub mod logs;
 pub mod rows;
+pub mod signature;
 pub mod snapshots;
 pub mod tools;
+pub mod words;
 
 use shared::map::row::{Reading, Settled};
 

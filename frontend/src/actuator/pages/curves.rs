@@ -6,7 +6,7 @@ use leptos::prelude::*;
 
 use super::registers::{fill_once, on_tool, toolbar};
 use super::{charts, part};
-use crate::actuator::markup::{curves, tools};
+use crate::actuator::markup::{curves, signature, tools};
 use crate::actuator::state::curves::{FILES, Preset, chart, rows, traces};
 use crate::actuator::state::dossier::{Dossier, Subject};
 use crate::actuator::state::strokes::{self, Kind};
@@ -27,7 +27,7 @@ fn first(dossier: &Dossier) -> Wanted {
         ..Wanted::default()
     }
     .rows(rows(dossier).into_iter())
-    .registers(dossier, &[STORED]);
+    .registers(dossier, &[STORED, signature::SETTINGS]);
     if is_v2(dossier) {
         wanted.files = FILES.iter().flat_map(|f| [f.0, f.0 + 1]).collect();
     }
@@ -156,7 +156,8 @@ fn TorquePage() -> impl IntoView {
         found.with(|found| {
             let shown = shown.get();
             let traces: Vec<_> = found.iter().filter(|t| shown.contains(&t.key)).collect();
-            curves::numbers(html, &traces, found);
+            store.with(|d| signature::signatures(html, d, &traces, found));
+            curves::numbers(html, &traces);
         });
     });
     let on_act = Callback::new(move |act: Act| {

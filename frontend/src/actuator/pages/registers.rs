@@ -7,7 +7,9 @@ use leptos::prelude::*;
 use super::{charts, save};
 use crate::actuator::markup::configuration::{self, Filter};
 use crate::actuator::markup::rows::{Around, list};
-use crate::actuator::markup::{communication, heading, health as markup_health, identity, tools};
+use crate::actuator::markup::{
+    communication, heading, health as markup_health, identity, tools, words,
+};
 use crate::actuator::state::dossier::{Dossier, Subject};
 use crate::actuator::state::wanted::{COUNTERS, Wanted};
 use crate::actuator::state::{health, rates, saved};
@@ -124,10 +126,7 @@ fn all_settings(dossier: &Dossier) -> Wanted {
         ..Wanted::default()
     }
     .rows(configuration::writable(dossier).into_iter());
-    if let Some(map) = dossier.device.map() {
-        let level = map.rows.iter().copied().filter(|r| r.address.get() == 3480);
-        wanted = wanted.rows(level);
-    }
+    wanted = wanted.registers(dossier, &words::REGISTERS);
     wanted
 }
 
@@ -142,7 +141,12 @@ pub(super) fn ConfigurationPage() -> impl IntoView {
         filter.with(|f| store.with(|d| configuration::filters(html, d, f)));
     });
     let level: Draw = Arc::new(move |html: &mut Markup| {
-        store.with(|d| configuration::logged_in(html, d));
+        store.with(|d| {
+            configuration::logged_in(html, d);
+            heading(html, "In words", "");
+            words::words(html, d);
+            heading(html, "Settings", "as the groups of the manual");
+        });
     });
     let settings: Draw = Arc::new(move |html: &mut Markup| {
         let around = around(store, opened, true);

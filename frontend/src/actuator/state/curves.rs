@@ -1,18 +1,12 @@
 //! Torque signatures: every curve that a device holds, from its registers and from its files.
 
 use shared::address::Table;
-use shared::icon3000::Log;
-use shared::icon3000::model::File;
+use shared::icon3000::curve::{Curve, Direction, Origin, Which};
 use shared::map::row::{Kind, Row};
 use shared::scale::Scale;
 
 use super::dossier::Dossier;
-use super::logs::Y2K;
-use crate::chart::time::{Civil, stamp};
 use crate::chart::{Axis, Chart, Point, Series, Shape, Stroke};
-
-/// Samples of a curve: one for each percent of the way.
-const SAMPLES: usize = 101;
 
 /// Files of torque curves: those of the opening and of the closing strokes.
 pub const FILES: [(u16, bool); 2] = [(1000, true), (2000, false)];
@@ -30,14 +24,8 @@ pub struct Trace {
     pub opening: bool,
     /// Its number among those of its kind: 0 is the reference, 1 the latest.
     pub number: u16,
-    /// Torque in percent at 0 to 100 %; `None` where it was not read.
-    pub samples: Vec<Option<i64>>,
-    /// When it was made, in seconds since 1970 by the clock of the device.
-    pub time: Option<i64>,
-    /// What else was noted at the stroke: name, text, unit.
-    pub facts: Vec<(&'static str, String, &'static str)>,
-    /// Where the manual describes it.
-    pub source: String,
+    /// The curve itself.
+    pub curve: Curve,
 }
 
 impl Trace {
@@ -47,10 +35,35 @@ impl Trace {
         self.number == 0
     }
 
-    /// When it was made, or that nothing tells.
+    /// When it was made by the clock of the device, or that nothing tells.
     #[must_use]
     pub fn when(&self) -> String {
-        self.time.map_or_else(|| "no date".to_owned(), stamp)
+        let when = self.curve.when.clone();
+        when.unwrap_or_else(|| "no date".to_owned())
+    }
+
+    /// Torque in percent at 0 to 100 %; `None` where it was not read.
+    #[must_use]
+    pub fn samples(&self) -> Vec<Option<i64>> {
+        let samples = self.curve.samples.iter();
+        samples.map(|s| s.map(i64::from)).collect()
+    }
+
+    /// What else was noted at the stroke: name, text, unit. What was not read is empty.
+    #[must_use]
+    pub fn facts(&self) -> [(&'static str, String, &'static str); 5] {
+        let curve = &self.curve;
+        let [electronics, terminals, motor] = curve
+            .temperatures
+            .map(|t| t.map_or_else(String::new, |t| t.to_string()));
+        let word = |word: Option<u16>| word.map_or_else(String::new, |w| w.to_string());
+        [
+            ("Stroke time", word(curve.stroke_time), "s"),
+            ("Voltage", word(curve.voltage), "V"),
+            ("Electronics", electronics, "°C"),
+            ("Terminal board", terminals, "°C"),
+            ("Motor", motor, "°C"),
+        ]
     }
 }
 
@@ -61,11 +74,10 @@ pub fn traces(dossier: &Dossier) -> Vec<Trace> {
         .into_iter()
         .filter_map(|row| of_registers(dossier, row))
         .collect();
-    for (first, opening) in FILES {
+    for (first, _) in FILES {
         for (&number, _) in dossier.files.range(first..=first + 100) {
-            if let Some(log) = dossier.log(number) {
-                found.push(of_file(&log, number, first, opening));
-            }
+            let curve = Curve::of_file(number, &dossier.records(number, 0));
+            found.extend(curve.map(|curve| trace(curve, format!("file-{number}"))));
         }
     }
     found.sort_by_key(|trace| (!trace.opening, trace.number));
@@ -82,92 +94,33 @@ pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
     rows.filter(|row| row.kind == Kind::Curve).collect()
 }
 
-/// Reading E34: 101 samples of one byte, then date, time, temperatures, voltage, stroke time.
 fn of_registers(dossier: &Dossier, row: &'static Row) -> Option<Trace> {
     let bytes = dossier.image.bytes(row)?;
-    let samples = bytes.get(..SAMPLES)?;
-    let opening = row.key.contains("open");
-    let reference = row.key.contains("reference");
-    let at = |index: usize| bytes.get(index).copied().unwrap_or(0);
-    let celsius = |index| i8::from_be_bytes([at(index)]).to_string();
-    let word = |index| u16::from_be_bytes([at(index), at(index + 1)]).to_string();
-    let time = bcd_time([at(101), at(102), at(103)], [at(106), at(105), at(104)]);
-    // Neither date nor torque: nothing is stored.
-    if time.is_none() && samples.iter().all(|s| *s == 0) {
-        return None;
-    }
-    let last = row
-        .address
-        .get()
-        .saturating_add(row.words)
-        .saturating_sub(1);
-    Some(Trace {
-        key: format!("hr-{}", row.address.get()),
-        label: name(opening, u16::from(!reference)),
-        place: format!("HR {} to {last}", row.address.get()),
-        opening,
-        number: u16::from(!reference),
-        samples: samples.iter().map(|s| Some(i64::from(*s))).collect(),
-        time,
-        facts: vec![
-            ("Electronics", celsius(107), "°C"),
-            ("Terminal board", celsius(108), "°C"),
-            ("Motor", celsius(109), "°C"),
-            ("Voltage", word(110), "V"),
-            ("Stroke time", word(112), "s"),
-        ],
-        source: row.source.to_string(),
-    })
+    let curve = Curve::of_registers(row, &bytes)?;
+    Some(trace(curve, format!("hr-{}", row.address.get())))
 }
 
-/// Day, month, year since 2000, and hour, minute, second, all BCD.
-fn bcd_time(date: [u8; 3], time: [u8; 3]) -> Option<i64> {
-    let two = |byte: u8| {
-        let (high, low) = (byte >> 4, byte & 0xF);
-        (high < 10 && low < 10).then(|| i64::from(high) * 10 + i64::from(low))
+fn trace(curve: Curve, key: String) -> Trace {
+    let opening = curve.direction == Direction::Open;
+    let number = match curve.which {
+        Which::Reference => 0,
+        Which::Stored(number) => number,
     };
-    let [day, month, year] = date.map(two);
-    let [hour, minute, second] = time.map(two);
-    let civil = Civil {
-        year: 2000 + year?,
-        month: month.filter(|m| (1..=12).contains(m))?,
-        day: day.filter(|d| (1..=31).contains(d))?,
-        second: hour? * 3600 + minute? * 60 + second?,
+    let place = match curve.origin {
+        Origin::Register(row) => {
+            let first = row.address.get();
+            let last = first.saturating_add(row.words).saturating_sub(1);
+            format!("HR {first} to {last}")
+        }
+        Origin::File(number) => format!("file {number}"),
     };
-    Some(civil.seconds())
-}
-
-fn of_file(log: &Log, number: u16, first: u16, opening: bool) -> Trace {
-    let item = |key: &str| log.get(key);
-    let fact = |label: &'static str, key: &str| {
-        let item = item(key)?;
-        Some((label, item.text(), item.field.unit))
-    };
-    let samples = log.run("torque");
     Trace {
-        key: format!("file-{number}"),
-        label: name(opening, number - first),
-        place: format!("file {number}"),
+        key,
+        label: name(opening, number),
+        place,
         opening,
-        number: number - first,
-        samples: samples
-            .iter()
-            .map(|s| s.and_then(shared::icon3000::Item::number))
-            .collect(),
-        time: item("time")
-            .and_then(shared::icon3000::Item::time)
-            .map(|t| Y2K + i64::from(t)),
-        facts: [
-            fact("Electronics", "electronics_temperature"),
-            fact("Terminal board", "terminal_board_temperature"),
-            fact("Motor", "motor_temperature"),
-            fact("Voltage", "voltage"),
-            fact("Stroke time", "stroke_time"),
-        ]
-        .into_iter()
-        .flatten()
-        .collect(),
-        source: File::of(number).map_or_else(String::new, |f| f.source.to_string()),
+        number,
+        curve,
     }
 }
 
@@ -248,7 +201,7 @@ pub fn chart(traces: &[&Trace]) -> Chart {
         },
         shape: Shape::Line,
         stroke: stroke(t, both),
-        points: points(0, &t.samples, Scale::ONE),
+        points: points(0, &t.samples(), Scale::ONE),
     });
     Chart {
         key: "torque".to_owned(),
@@ -323,11 +276,12 @@ mod tests {
             (trace.key.as_str(), trace.opening, trace.number),
             ("hr-3328", true, 1)
         );
-        assert_eq!(trace.samples.len(), 101);
-        assert_eq!((trace.samples[0], trace.samples[100]), (Some(40), Some(10)));
+        let samples = trace.samples();
+        assert_eq!(samples.len(), 101);
+        assert_eq!((samples[0], samples[100]), (Some(40), Some(10)));
         assert_eq!(trace.when(), "2024-02-29 12:34:56");
-        let facts: Vec<_> = trace.facts.iter().map(|f| f.1.as_str()).collect();
-        assert_eq!(facts, ["25", "24", "-5", "400", "30"]);
+        let facts = trace.facts().map(|f| f.1);
+        assert_eq!(facts, ["30", "400", "25", "24", "-5"]);
     }
 
     /// An actuator that never stored a curve has zeros there, not a curve of no torque.
@@ -385,10 +339,8 @@ mod tests {
         let mut dossier = Dossier::new("XV", Device::Icon3000v2);
         put(&mut dossier, 1001, &[7; 50]);
         let traces = traces(&dossier);
-        assert_eq!(
-            (traces[0].samples[49], traces[0].samples[50]),
-            (Some(7), None)
-        );
+        let samples = traces[0].samples();
+        assert_eq!((samples[49], samples[50]), (Some(7), None));
         assert_eq!(traces[0].when(), "no date");
     }
 }

@@ -16,6 +16,8 @@ pub struct Job {
     since: u64,
     /// When it began.
     began: u64,
+    /// When something was last heard of it.
+    heard: u64,
     /// Steps of the message under way.
     steps: Vec<IconStep>,
     /// Requests that are done, of the messages before included.
@@ -41,6 +43,7 @@ impl Job {
             wanted,
             since,
             began: now,
+            heard: now,
             steps,
             done: 0,
             total,
@@ -120,6 +123,18 @@ impl Job {
     #[must_use]
     pub fn is_whole(&self, dossier: &Dossier) -> bool {
         self.wanted.missing(dossier, self.since).is_empty()
+    }
+
+    /// Something was heard of it at this time.
+    pub const fn touch(&mut self, now: u64) {
+        self.heard = now;
+    }
+
+    /// True if nothing was heard of it for so long that nothing will come any more: the bridge
+    /// refused it, or does not know it.
+    #[must_use]
+    pub const fn is_stuck(&self, now: u64) -> bool {
+        now.saturating_sub(self.heard) > 60_000_000
     }
 
     /// From when on what was read counts.
@@ -257,6 +272,9 @@ mod tests {
         // Twelve took 1.8 s, so twenty take 3 s.
         assert_eq!(job.progress(2_800_000), "12 of 32 requests, 3 s left");
         assert_eq!(job.progress(121_000_000), "12 of 32 requests, 4 min left");
+        assert!(!job.is_stuck(60_000_000) && job.is_stuck(62_000_000));
+        job.touch(61_000_000);
+        assert!(!job.is_stuck(62_000_000));
         job.cancelled = true;
         assert_eq!(job.progress(2_800_000), "12 of 32 requests, ending");
         let nothing = Wanted::default();

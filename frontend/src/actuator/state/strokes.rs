@@ -2,6 +2,7 @@
 //! words.
 
 use shared::address::{Address, Table};
+use shared::icon3000::stroke::Stroke as Told;
 use shared::icon3000::{Item, Log};
 use shared::scale::Scale;
 use shared::value::{Quality, Value};
@@ -52,6 +53,8 @@ pub struct Stroke {
     pub time: Option<i64>,
     /// Travel in percent that it was to reach; `None` for an EFS, which goes all the way.
     pub travel: Option<i64>,
+    /// The stroke as its file tells it.
+    pub told: Told,
     /// All other values of the file.
     pub items: Vec<Item>,
     /// Where the manual describes it.
@@ -94,56 +97,15 @@ impl Stroke {
         }
     }
 
-    /// How it ended, in words, with what the status and the reset conditions add.
+    /// How it ended, in words.
     #[must_use]
     pub fn verdict(&self) -> String {
-        if self.kind == Kind::Efs {
-            let last = self.out.iter().enumerate().rev();
-            let reached = last.filter_map(|(at, t)| Some((at, (*t).filter(|t| *t > 0)?)));
-            return reached
-                .take(1)
-                .map(|(at, t)| {
-                    format!(
-                        "It reached {at} % of the way after {} s.",
-                        Scale::TENTH.apply(t)
-                    )
-                })
-                .next()
-                .unwrap_or_else(|| "The file holds no times.".to_owned());
-        }
-        let said = match self.result() {
-            Some(1) => "It passed.".to_owned(),
-            Some(2) => "It failed; the result does not say at which limit.".to_owned(),
-            Some(3) => "It was reset before it was over.".to_owned(),
-            Some(4) => "It failed: the way out took longer than T-PST allows.".to_owned(),
-            Some(5) => "It failed: the way back took longer than T-RET allows.".to_owned(),
-            Some(6) => "It failed: it went further beyond its travel than OV-TR allows.".to_owned(),
-            Some(code) => format!("Its result is {code}, which has no name (reading E78)."),
-            None => "Its result was not read.".to_owned(),
-        };
-        let mut words = said;
-        for (key, lead) in [("status", "Status"), ("reset_conditions", "Reset by")] {
-            let names = self.get(key).map(active).unwrap_or_default();
-            if !names.is_empty() {
-                words.push_str(&format!(" {lead}: {}.", names.join(", ")));
-            }
+        let mut words = self.told.in_words();
+        if self.told.is_contradictory() {
+            words.push_str(" The status bits say otherwise; the file keeps both.");
         }
         words
     }
-}
-
-/// Names of the bits that are set.
-fn active(item: &Item) -> Vec<String> {
-    let Value::Flags { raw, set } = item.value else {
-        return Vec::new();
-    };
-    let on = |at: &u32| raw.wrapping_shr(*at) & 1 == 1;
-    let bits = (0..32).filter(on);
-    bits.map(|at| {
-        set.get(at)
-            .map_or_else(|| format!("bit {at}"), |m| m.label.to_owned())
-    })
-    .collect()
 }
 
 /// All strokes of a kind that were read, the reference first, then the latest.
@@ -152,11 +114,14 @@ pub fn strokes(dossier: &Dossier, kind: Kind) -> Vec<Stroke> {
     let first = kind.first();
     let files = dossier.files.range(first..=first + 16);
     files
-        .filter_map(|(&number, _)| Some(of_file(&dossier.log(number)?, kind, number - first)))
+        .filter_map(|(&number, _)| {
+            let told = Told::of_file(number, &dossier.records(number, 0))?;
+            Some(of_file(&dossier.log(number)?, told, kind, number - first))
+        })
         .collect()
 }
 
-fn of_file(log: &Log, kind: Kind, number: u16) -> Stroke {
+fn of_file(log: &Log, told: Told, kind: Kind, number: u16) -> Stroke {
     let run = |key: &str| -> Vec<Option<i64>> {
         let items = log.run(key);
         items.iter().map(|i| i.and_then(Item::number)).collect()
@@ -192,6 +157,7 @@ fn of_file(log: &Log, kind: Kind, number: u16) -> Stroke {
             .map(|t| Y2K + i64::from(t)),
         travel,
         source: log.file.source.to_string(),
+        told,
         items,
     }
 }
@@ -391,9 +357,10 @@ mod tests {
             (None, Some(1), None)
         );
         assert_eq!((latest.opening, latest.travel), (Some(true), Some(20)));
-        assert_eq!(
-            reference.verdict(),
-            "It passed. Status: Passed. Reset by: Local Stop."
+        let verdict = reference.verdict();
+        assert!(
+            verdict.starts_with("Passed") && verdict.contains("4.2 s"),
+            "{verdict}"
         );
         assert!(latest.verdict().contains("longer than T-PST allows"));
         assert_eq!(latest.when(), "2000-01-01 00:01:00");
@@ -419,7 +386,7 @@ mod tests {
         put(&mut dossier, 3001, &pst(3, 0, 0));
         let all = strokes(&dossier, Kind::Pst);
         assert!(
-            all[1].verdict().contains("has no name"),
+            all[1].verdict().contains("unknown code 0"),
             "{}",
             all[1].verdict()
         );
@@ -433,10 +400,7 @@ mod tests {
         words.extend([0, 60, 21, 22, 30, 25, 400, 0, 0]);
         put(&mut dossier, 3501, &words);
         let all = strokes(&dossier, Kind::Efs);
-        assert_eq!(
-            all[0].verdict(),
-            "It reached 100 % of the way after 10.0 s."
-        );
+        assert_eq!(all[0].verdict(), "Emergency stroke to 0 % in 10.0 s.");
         assert_eq!(all[0].opening, Some(false));
         let chart = chart(&all[0], None, &Limits::default());
         assert_eq!(chart.series.len(), 1);
