@@ -37,6 +37,12 @@ impl Clock {
         Micros::new(u64::try_from(passed).unwrap_or(u64::MAX))
     }
 
+    /// The moment of a time of this clock.
+    #[must_use]
+    pub fn moment(&self, at: Micros) -> Instant {
+        self.start + Duration::from_micros(at.get())
+    }
+
     /// Milliseconds since 1970, running on from what the wall clock said at the start.
     #[must_use]
     pub fn wall_ms(&self) -> u64 {

@@ -4,16 +4,19 @@
 
 mod check;
 mod ddc;
+pub mod hart;
 mod profile;
 mod raw;
 #[cfg(test)]
 mod tests;
 
 pub use ddc::{DdcConfig, DdcPorts};
+pub use hart::HartConfig;
 
 use shared::device::Device;
 use shared::dop::Profile;
 use shared::frame::Framing;
+use shared::hart::link::Target;
 use std::fmt;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -86,6 +89,8 @@ pub enum LineConfig {
     Simulator,
     /// A DDC-100 network, on one or two serial ports or simulated.
     Ddc(Arc<DdcConfig>),
+    /// A HART line: a modem, a gateway, or simulated.
+    Hart(Arc<HartConfig>),
 }
 
 impl LineConfig {
@@ -95,6 +100,7 @@ impl LineConfig {
         match self {
             Self::Serial { framing, .. } => *framing,
             Self::Ddc(ddc) => ddc.framing,
+            Self::Hart(hart) => hart.framing(),
             Self::Tcp { .. } => Framing::Tcp,
             Self::RtuOverTcp { .. } | Self::Simulator => Framing::Rtu,
         }
@@ -111,12 +117,22 @@ impl LineConfig {
         }
     }
 
+    /// The line, if it is one of HART devices.
+    #[must_use]
+    pub const fn hart(&self) -> Option<&Arc<HartConfig>> {
+        match self {
+            Self::Hart(hart) => Some(hart),
+            _ => None,
+        }
+    }
+
     /// True if nothing of it is real.
     #[must_use]
     pub fn is_simulated(&self) -> bool {
         match self {
             Self::Simulator => true,
             Self::Ddc(ddc) => matches!(ddc.ports, DdcPorts::Simulated(_)),
+            Self::Hart(hart) => hart.way == hart::HartWay::Simulated,
             _ => false,
         }
     }
@@ -133,6 +149,7 @@ impl fmt::Display for LineConfig {
             Self::RtuOverTcp { host } => write!(f, "{host}, RTU over TCP"),
             Self::Simulator => f.write_str("built-in simulator"),
             Self::Ddc(ddc) => write!(f, "{ddc}"),
+            Self::Hart(hart) => write!(f, "{hart}"),
         }
     }
 }
@@ -216,12 +233,14 @@ pub struct DeviceConfig {
     pub device: Device,
     /// Index of its bus.
     pub bus: usize,
-    /// Its unit address.
+    /// Its unit address; of a HART device its polling address.
     pub unit: u8,
     /// What it does in the plant.
     pub description: String,
     /// For a DOP device: what the manual leaves open, as this site has it.
     pub profile: Option<Arc<Profile>>,
+    /// For a HART device: how it is found.
+    pub target: Option<Target>,
 }
 
 impl DeviceConfig {
@@ -235,6 +254,7 @@ impl DeviceConfig {
             unit,
             description: String::new(),
             profile: None,
+            target: None,
         }
     }
 }
@@ -305,8 +325,8 @@ impl Config {
         self.devices.iter().filter(move |d| Some(d.bus) == at)
     }
 
-    /// What is served without a configuration: a plant of four valves that is alive, and a loop of
-    /// field units whose cable breaks now and then.
+    /// What is served without a configuration: a plant of four valves that is alive, a loop of
+    /// field units whose cable breaks now and then, and two valves on a HART loop.
     #[must_use]
     pub fn simulated() -> Self {
         let on = |bus: usize, tag: &str, device: Device, unit, description: &str| DeviceConfig {
@@ -316,6 +336,7 @@ impl Config {
             unit,
             description: description.into(),
             profile: (device == Device::Dop).then(crate::sim::dop_profile),
+            target: None,
         };
         let mut devices = vec![
             on(
@@ -352,6 +373,7 @@ impl Config {
                 .iter()
                 .map(|(tag, device, unit, what)| on(1, tag, *device, *unit, what)),
         );
+        devices.extend(hart::simulated(2));
         Self {
             listen: LISTEN,
             hosts: Vec::new(),
@@ -364,6 +386,7 @@ impl Config {
                     turnaround: Duration::ZERO,
                 },
                 ddc::simulated(),
+                HartConfig::of(hart::HartWay::Simulated).bus(hart::SIMULATED),
             ],
             devices,
         }

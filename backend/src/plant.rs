@@ -7,6 +7,7 @@ use crate::clock::Clock;
 use crate::config::{Config, DeviceConfig, LineConfig};
 use crate::sim::{self, Actuators};
 use shared::device::Device as Kind;
+use shared::frame::Framing;
 use shared::proto::{self, ToPage, VERSION};
 use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::watch;
@@ -83,6 +84,22 @@ impl Plant {
                 framing: bus.line.framing().key().into(),
                 simulated,
             };
+            if bus.line.hart().is_some() {
+                let plug = if bus.line.is_simulated() {
+                    Plug::Loop(sim::hart::Loop::of(&own, clock))
+                } else {
+                    Plug::Configured
+                };
+                let info = proto::Bus {
+                    simulated: bus.line.is_simulated(),
+                    ..info
+                };
+                let recorder = Recorder::new(&bus.name, clock, activity.clone());
+                let handle =
+                    bus::hart::start(bus.clone(), &own, plug, clock, board.clone(), recorder);
+                buses.push((info, handle));
+                continue;
+            }
             let plug = if simulated {
                 Plug::Simulated(Actuators::new(&own, clock))
             } else {
@@ -178,6 +195,33 @@ impl Plant {
         found.map(|d| d.info.tag.as_str())
     }
 
+    /// The HART bus with this name.
+    #[must_use]
+    pub fn hart_bus(&self, name: &str) -> Option<&Handle> {
+        let found = self.buses.iter().find(|(info, _)| info.name == name);
+        found.filter(|(info, _)| is_hart(info)).map(|(_, h)| h)
+    }
+
+    /// All HART buses.
+    pub fn hart_buses(&self) -> impl Iterator<Item = &Handle> {
+        let hart = self.buses.iter().filter(|(info, _)| is_hart(info));
+        hart.map(|(_, handle)| handle)
+    }
+
+    /// The line of the HART device with this tag, and its index on it.
+    ///
+    /// # Errors
+    /// If there is no such device, or if it is no HART device; in words.
+    pub fn hart_device(&self, tag: &str) -> Result<(&Handle, usize), String> {
+        let Some(device) = self.devices.iter().find(|d| d.info.tag == tag) else {
+            return Err(format!("There is no device \"{tag}\"; reload the page."));
+        };
+        match self.buses.get(device.bus) {
+            Some((info, handle)) if is_hart(info) => Ok((handle, device.at)),
+            _ => Err(format!("{tag} is no HART device.")),
+        }
+    }
+
     /// True if the device with this tag is declared as DOP.
     #[must_use]
     pub fn has_objects(&self, tag: &str) -> bool {
@@ -212,4 +256,8 @@ impl Device {
     fn is_icon(&self) -> bool {
         Kind::from_key(&self.info.kind).is_some_and(Kind::is_icon)
     }
+}
+
+fn is_hart(bus: &proto::Bus) -> bool {
+    [Framing::Hart.key(), Framing::HartIp.key()].contains(&bus.framing.as_str())
 }

@@ -3,6 +3,7 @@
 //! What the actuators do is in `shared::sim`; here are only their lines and their time.
 
 pub mod ddc;
+pub mod hart;
 
 use crate::bus::timing::gap;
 use crate::clock::Clock;

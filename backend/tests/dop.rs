@@ -43,6 +43,7 @@ fn device(profile: Arc<Profile>) -> DeviceConfig {
         unit: UNIT,
         description: String::new(),
         profile: Some(profile),
+        target: None,
     }
 }
 

@@ -265,6 +265,7 @@ fn handle(framing: Framing, device: Device, stream: DuplexStream) -> Handle {
         unit: UNIT,
         description: String::new(),
         profile: None,
+        target: None,
     }];
     let (clock, activity) = (Clock::start(), watch::Sender::new(0));
     let board = Board::new(activity.clone());

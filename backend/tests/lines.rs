@@ -44,6 +44,7 @@ fn device(unit: u8) -> DeviceConfig {
         unit,
         description: String::new(),
         profile: None,
+        target: None,
     }
 }
 

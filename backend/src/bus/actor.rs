@@ -251,6 +251,8 @@ impl Actor {
                     dop.ask(client, ask, out);
                 }
             }
+            // No device of this line speaks HART.
+            Command::Hart(_) => {}
             Command::Icon {
                 client,
                 device,

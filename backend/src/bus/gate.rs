@@ -14,18 +14,29 @@ use shared::frame::ascii::hex_pair;
 use shared::pdu::length::{Length, request};
 use std::sync::Arc;
 
+use super::hart;
 use super::query::is_counter;
 use crate::config::DeviceConfig;
 
 /// A frame that may not be sent. It never leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "function code {function:02} is neither a read nor the request for a diagnostic object and was \
-     not sent; this program only reads"
-)]
-pub struct NotARead {
-    /// What the frame would have asked for.
-    pub function: u8,
+pub enum NotARead {
+    /// A Modbus frame, and what it would have asked for.
+    #[error(
+        "function code {0:02} is neither a read nor the request for a diagnostic object and was \
+         not sent; this program only reads"
+    )]
+    Function(u8),
+    /// A HART command.
+    #[error(
+        "HART command {0} with these data is no read and was not sent; this program only reads"
+    )]
+    Command(u16),
+    /// Bytes that are no request.
+    #[error(
+        "these bytes are no HART request that reads and were not sent; this program only reads"
+    )]
+    Bytes,
 }
 
 /// Why there is no permit.
@@ -43,6 +54,8 @@ pub enum Denied {
 #[derive(Clone, Debug, Default)]
 pub struct Gate {
     targets: Arc<[Target]>,
+    /// This is a HART line: only HART passes, and only what reads.
+    hart: bool,
 }
 
 /// The request register of one device.
@@ -133,6 +146,16 @@ impl Gate {
         };
         Self {
             targets: devices.iter().filter_map(target).collect(),
+            hart: false,
+        }
+    }
+
+    /// The gate of a HART line: nothing that writes passes, whatever the configuration says.
+    #[must_use]
+    pub fn hart() -> Self {
+        Self {
+            targets: Arc::default(),
+            hart: true,
         }
     }
 
@@ -173,12 +196,21 @@ impl Gate {
     /// # Errors
     /// If the bytes are anything else.
     pub fn admit(&self, framing: Framing, frame: &[u8]) -> Result<(), NotARead> {
+        if self.hart {
+            let admitted = match framing {
+                Framing::Hart => hart::gate::admit(frame),
+                Framing::HartIp => hart::gate::admit_ip(frame),
+                Framing::Rtu | Framing::Ascii | Framing::Tcp => Err(hart::gate::Refused(None)),
+            };
+            let why = |why: hart::gate::Refused| why.0.map_or(NotARead::Bytes, NotARead::Command);
+            return admitted.map_err(why);
+        }
         let pdu = pdu_of(frame, framing).unwrap_or_default();
         let unit = match framing {
             Framing::Rtu => frame.first().copied(),
             Framing::Ascii => frame.get(1..3).and_then(hex_pair),
             Framing::Tcp => frame.get(6).copied(),
-            // No HART command leaves through this gate.
+            // No HART command leaves through the gate of another line.
             Framing::Hart | Framing::HartIp => None,
         };
         let transaction = match (framing, frame) {
@@ -191,9 +223,7 @@ impl Gate {
         let allowed = |unit| is_read(&pdu) || self.is_request(unit, &pdu);
         match unit {
             Some(unit) if complete && whole(unit) && allowed(unit) => Ok(()),
-            _ => Err(NotARead {
-                function: pdu.first().copied().unwrap_or(0),
-            }),
+            _ => Err(NotARead::Function(pdu.first().copied().unwrap_or(0))),
         }
     }
 }

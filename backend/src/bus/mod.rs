@@ -7,6 +7,7 @@ pub mod board;
 pub mod ddc;
 mod dop;
 pub mod gate;
+pub mod hart;
 pub mod icon;
 pub mod master;
 mod open;
@@ -81,6 +82,8 @@ pub enum Command {
         /// Gets what comes of it.
         out: Outlet,
     },
+    /// About the devices of a HART line.
+    Hart(hart::Wish),
     /// The client is gone, and its watches with it.
     Leave {
         /// Who.

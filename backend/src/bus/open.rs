@@ -21,6 +21,8 @@ pub enum Plug {
     Configured,
     /// The simulated plant.
     Simulated(Actuators),
+    /// The simulated HART loop.
+    Loop(sim::hart::Loop),
     /// A stream that is made anew each time the line is opened; for tests.
     Stream(Box<dyn FnMut() -> io::Result<Box<dyn Stream>> + Send>),
 }
@@ -69,7 +71,7 @@ impl Line {
                 });
                 Box::new(near)
             }
-            (LineConfig::Simulator, Plug::Configured) | (LineConfig::Ddc(_), _) => {
+            (LineConfig::Simulator, _) | (LineConfig::Ddc(_) | LineConfig::Hart(_), _) => {
                 return Err(io::Error::other("nothing is simulated here"));
             }
         };

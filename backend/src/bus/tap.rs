@@ -8,6 +8,12 @@ use std::pin::Pin;
 use std::task::{Context, Poll, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
+/// A stream whose sender is switched on before it sends.
+pub trait Keyed {
+    /// Switches it.
+    fn key(&mut self, on: bool);
+}
+
 /// A stream between us and the devices. Each frame must be handed over as a whole.
 #[derive(Debug)]
 pub struct Tap<T> {
@@ -29,6 +35,14 @@ impl<T> Tap<T> {
             recorder,
             admitted: 0,
         }
+    }
+
+    /// Switches the carrier of a modem.
+    pub fn key(&mut self, on: bool)
+    where
+        T: Keyed,
+    {
+        self.inner.key(on);
     }
 
     /// What records this line.
@@ -138,6 +152,7 @@ mod tests {
             unit: 4,
             description: String::new(),
             profile: Some(profile.into()),
+            target: None,
         };
         let write = |address: u16, word: u16| {
             let ([a, b], [c, d]) = (address.to_be_bytes(), word.to_be_bytes());

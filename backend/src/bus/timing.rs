@@ -56,7 +56,10 @@ impl Timing {
                 };
                 (ddc.baud, ddc.mode.bits(), stall)
             }
-            LineConfig::Tcp { .. } | LineConfig::RtuOverTcp { .. } => (0, 0, NETWORK_STALL),
+            // A HART line has times of its own.
+            LineConfig::Tcp { .. } | LineConfig::RtuOverTcp { .. } | LineConfig::Hart(_) => {
+                (0, 0, NETWORK_STALL)
+            }
         };
         let gap = gap(baud);
         Self {

@@ -1,6 +1,7 @@
 //! What happened on a line, in words: what, where, and what to do next.
 
 use super::Fault;
+use crate::config::hart::HartWay;
 use crate::config::{BusConfig, LineConfig};
 use shared::pdu::names;
 use shared::proto::Outcome;
@@ -33,7 +34,7 @@ pub fn fault(fault: &Fault, bus: &BusConfig, unit: u8, tries: u8) -> String {
             LineConfig::Tcp { host } | LineConfig::RtuOverTcp { host } => {
                 format!("no answer within {ms} ms{tries}; check that {host} knows a unit {unit}")
             }
-            LineConfig::Simulator | LineConfig::Ddc(_) => {
+            LineConfig::Simulator | LineConfig::Ddc(_) | LineConfig::Hart(_) => {
                 format!("no answer within {ms} ms{tries}")
             }
         },
@@ -78,6 +79,11 @@ pub fn down(line: &LineConfig, error: &io::Error) -> String {
     match line {
         LineConfig::Serial { port, .. } => serial(port, error),
         LineConfig::Tcp { host } | LineConfig::RtuOverTcp { host } => network(host, error),
+        LineConfig::Hart(hart) => match &hart.way {
+            HartWay::Serial { port, .. } => serial(port, error),
+            HartWay::Ip { host, .. } => network(host, error),
+            HartWay::Simulated => format!("the simulator ended: {error}"),
+        },
         LineConfig::Simulator | LineConfig::Ddc(_) => format!("the simulator ended: {error}"),
     }
 }

@@ -1,7 +1,7 @@
 //! `valvescope decode`: bytes or text to frames, in one pass and bounded memory.
 
 mod input;
-mod text;
+pub(super) mod text;
 
 use super::{DeviceArg, MISUSE, path_or_stdin, refuse};
 use clap::ValueEnum;
@@ -81,7 +81,7 @@ impl FramingArg {
 
 /// Forms of output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
+pub(super) enum Format {
     /// For people.
     Text,
     /// For programs.

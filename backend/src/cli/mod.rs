@@ -3,6 +3,7 @@
 mod decode;
 mod diff;
 mod dop;
+mod hart;
 mod maps;
 mod serve;
 mod simulate;
@@ -51,7 +52,10 @@ enum Verb {
     Diff(diff::Args),
     /// Print the register map of a device.
     Maps(maps::Args),
-    /// Be an ICON3000 actuator that other programs can read.
+    /// Look for HART devices on a line or behind a gateway, and read them.
+    #[command(subcommand)]
+    Hart(hart::Verb),
+    /// Be an actuator that other programs can read.
     Simulate(simulate::Args),
 }
 
@@ -66,6 +70,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Verb::Snapshot(args)) => snapshot::run(&args),
         Some(Verb::Diff(args)) => diff::run(&args),
         Some(Verb::Maps(args)) => maps::run(&args),
+        Some(Verb::Hart(verb)) => hart::run(&verb),
         Some(Verb::Simulate(args)) => simulate::run(&args),
     }
 }

@@ -1,6 +1,7 @@
 //! `valvescope simulate`: an actuator for other programs.
 
 mod ddc;
+mod hart;
 
 use super::serve::{bind, say};
 use super::{DeviceArg, address, asked_to_end, block_on, log_to_stderr, refuse};
@@ -19,6 +20,8 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio_serial::{SerialPort, SerialStream};
 
+/// Baud rate if nothing else is said.
+const BAUD: u32 = 9600;
 /// Shortest silence that ends a frame: less can't be told apart from a busy computer.
 const SHORTEST_GAP: Duration = Duration::from_millis(4);
 
@@ -39,12 +42,15 @@ pub(super) struct Args {
     /// host port 1 and 2. `pty` instead of a path makes a pseudo terminal, whose path is printed.
     #[arg(long, value_name = "PATH", num_args = 1..=2, group = "line")]
     ddc100: Vec<String>,
+    /// A Rotork actuator with HART on this serial port; `pty` makes a pseudo terminal.
+    #[arg(long, value_name = "PATH", group = "line")]
+    hart: Option<String>,
     /// Unit address.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=247))]
     unit: u8,
-    /// Baud rate of the serial port.
-    #[arg(long, default_value_t = 9600, value_parser = clap::value_parser!(u32).range(300..=921_600))]
-    baud: u32,
+    /// Baud rate of the serial port: 9600 if nothing else is said, 1200 for HART.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(300..=921_600))]
+    baud: Option<u32>,
     /// Parity of the serial port.
     #[arg(long, value_enum, default_value_t = ParityArg::Even)]
     parity: ParityArg,
@@ -58,6 +64,8 @@ pub(super) struct Args {
     dop: DopArgs,
     #[command(flatten)]
     network: ddc::Args,
+    #[command(flatten)]
+    valve: hart::HartArgs,
 }
 
 /// How a DOP device behaves.
@@ -168,12 +176,29 @@ pub(super) fn run(args: &Args) -> ExitCode {
         );
     }
     if !args.ddc100.is_empty() {
-        return block_on(ddc::run(&args.network, &args.ddc100, args.baud));
+        return block_on(ddc::run(
+            &args.network,
+            &args.ddc100,
+            args.baud.unwrap_or(BAUD),
+        ));
+    }
+    if let Some(path) = &args.hart {
+        return block_on(hart::run(
+            &args.valve,
+            path,
+            args.device,
+            &args.tag,
+            args.baud,
+        ));
+    }
+    if Device::from(args.device).family().is_some() {
+        return refuse("a Rotork device speaks HART: write --hart PATH, or --hart pty");
     }
     block_on(simulate(args))
 }
 
 async fn simulate(args: &Args) -> ExitCode {
+    let baud = args.baud.unwrap_or(BAUD);
     let device = DeviceConfig {
         tag: args.tag.clone(),
         device: args.device.into(),
@@ -181,20 +206,21 @@ async fn simulate(args: &Args) -> ExitCode {
         unit: args.unit,
         description: String::new(),
         profile: None,
+        target: None,
     };
     let actuators = Actuators::with([&device], Clock::start(), args.dop.setup());
     if let Some(address) = args.listen {
         return tcp(address, actuators).await;
     }
-    let pace = Pace::real(gap(args.baud).max(SHORTEST_GAP));
+    let pace = Pace::real(gap(baud).max(SHORTEST_GAP));
     if let Some(path) = &args.serial {
         let path = path.to_string_lossy();
-        return match serial::open(&path, args.baud, args.parity.mode()) {
+        return match serial::open(&path, baud, args.parity.mode()) {
             Ok(port) => {
                 let mode = args.parity.mode();
                 say(&format!(
-                    "serving on {path} {} {mode}, unit {}",
-                    args.baud, args.unit
+                    "serving on {path} {baud} {mode}, unit {}",
+                    args.unit
                 ));
                 rtu(port, &actuators, pace).await
             }

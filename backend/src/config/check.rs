@@ -1,7 +1,7 @@
 //! From what is written to what is meant.
 
-use super::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, ddc, profile, raw};
-use shared::device::Device;
+use super::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, ddc, hart, profile, raw};
+use shared::device::{Device, Family};
 use shared::frame::Framing;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -65,9 +65,11 @@ pub(super) fn check(file: raw::File, beside: &Path) -> Result<Config, Wrong> {
         config.buses.push(bus);
     }
     for device in file.device {
-        let device = self::device(device.into_inner(), &config, beside)?;
+        let at = device.span().start;
+        let device = self::device(device.into_inner(), at, &config, beside)?;
         config.devices.push(device);
     }
+    hart::loops(&mut config);
     for (bus, raw) in config.buses.iter().zip(&file.bus) {
         ddc::network(bus, raw.get_ref(), &config)?;
     }
@@ -99,10 +101,14 @@ fn bus(bus: &Spanned<raw::Bus>, config: &Config) -> Result<BusConfig, Wrong> {
             strays(raw, kind)?;
             return ddc::bus(bus, kind == "ddc100-simulator");
         }
+        "hart" | "hart-ip" => {
+            strays(raw, kind)?;
+            return hart::bus(bus, kind == "hart-ip");
+        }
         other => {
             let text = format!(
                 "`kind` is \"{other}\"; a bus is \"rtu\", \"ascii\", \"tcp\", \"rtu-over-tcp\", \
-                 \"ddc100\", \"ddc100-simulator\" or \"simulator\""
+                 \"hart\", \"hart-ip\", \"ddc100\", \"ddc100-simulator\" or \"simulator\""
             );
             return wrong(&raw.kind, text);
         }
@@ -125,11 +131,19 @@ fn strays(raw: &raw::Bus, kind: &str) -> Result<(), Wrong> {
     let serial = matches!(kind, "rtu" | "ascii");
     let network = matches!(kind, "tcp" | "rtu-over-tcp");
     let ddc = matches!(kind, "ddc100" | "ddc100-simulator");
+    let (modem, gateway) = (kind == "hart", kind == "hart-ip");
+    let hart = modem || gateway;
     let strays = [
-        (raw.port.as_ref(), serial || kind == "ddc100", "port"),
+        (
+            raw.port.as_ref(),
+            serial || modem || kind == "ddc100",
+            "port",
+        ),
         (raw.port2.as_ref(), kind == "ddc100", "port2"),
-        (raw.mode.as_ref(), serial || ddc, "mode"),
-        (raw.host.as_ref(), network, "host"),
+        (raw.mode.as_ref(), serial || ddc || modem, "mode"),
+        (raw.host.as_ref(), network || gateway, "host"),
+        (raw.master.as_ref(), hart, "master"),
+        (raw.transport.as_ref(), gateway, "transport"),
         (raw.shape.as_ref(), ddc, "shape"),
         (raw.framing.as_ref(), ddc, "framing"),
         (raw.registers.as_ref(), ddc, "registers"),
@@ -141,14 +155,18 @@ fn strays(raw: &raw::Bus, kind: &str) -> Result<(), Wrong> {
     ];
     let strays = strays.map(|(value, belongs, key)| (value.map(Spanned::span), belongs, key));
     let numbers = [
-        (raw.baud.as_ref(), serial || ddc, "baud"),
+        (raw.baud.as_ref(), serial || ddc || modem, "baud"),
+        (raw.preambles.as_ref(), modem, "preambles"),
+        (raw.gap_ms.as_ref(), modem, "gap_ms"),
+        (raw.rts_lead_ms.as_ref(), modem, "rts_lead_ms"),
+        (raw.rts_tail_ms.as_ref(), modem, "rts_tail_ms"),
         (raw.turn_ms.as_ref(), ddc, "turn_ms"),
-        (raw.turnaround_ms.as_ref(), !ddc, "turnaround_ms"),
+        (raw.turnaround_ms.as_ref(), !ddc && !hart, "turnaround_ms"),
     ];
     let numbers = numbers.map(|(value, belongs, key)| (value.map(Spanned::span), belongs, key));
     for (span, belongs, key) in strays.into_iter().chain(numbers) {
         if let (Some(span), false) = (span, belongs) {
-            let instead = if key == "turnaround_ms" {
+            let instead = if key == "turnaround_ms" && ddc {
                 "write `turn_ms`"
             } else {
                 "remove the line"
@@ -224,7 +242,7 @@ fn serial(bus: &Spanned<raw::Bus>, framing: Framing) -> Result<LineConfig, Wrong
 }
 
 /// A name or address; without a port it gets the usual one.
-fn host(bus: &Spanned<raw::Bus>, usual: u16) -> Result<String, Wrong> {
+pub(super) fn host(bus: &Spanned<raw::Bus>, usual: u16) -> Result<String, Wrong> {
     let raw = bus.get_ref();
     let Some(host) = &raw.host else {
         let text = format!("the bus has no `host`; write it as host = \"10.0.0.5:{usual}\"");
@@ -257,7 +275,13 @@ fn host(bus: &Spanned<raw::Bus>, usual: u16) -> Result<String, Wrong> {
     }
 }
 
-fn device(raw: raw::Device, config: &Config, beside: &Path) -> Result<DeviceConfig, Wrong> {
+/// A device whose section begins at this offset.
+fn device(
+    raw: raw::Device,
+    at: usize,
+    config: &Config,
+    beside: &Path,
+) -> Result<DeviceConfig, Wrong> {
     let tag = raw.tag.get_ref();
     if tag.trim().is_empty() {
         return wrong(&raw.tag, "`tag` is empty; give the device a tag");
@@ -266,9 +290,11 @@ fn device(raw: raw::Device, config: &Config, beside: &Path) -> Result<DeviceConf
         let text = format!("there is a device \"{tag}\" already; tags must differ");
         return wrong(&raw.tag, text);
     }
-    let known = Device::from_key(raw.kind.get_ref()).filter(|d| Device::ALL.contains(d));
-    let Some(device) = known else {
-        let list = Device::ALL.map(|d| format!("\"{}\"", d.key())).join(", ");
+    let Some(device) = Device::from_key(raw.kind.get_ref()) else {
+        let hart = Family::ALL.into_iter().map(Device::Rotork);
+        let kinds = Device::ALL.into_iter().chain(hart);
+        let list: Vec<String> = kinds.map(|d| format!("\"{}\"", d.key())).collect();
+        let list = list.join(", ");
         let text = format!("`kind` is \"{}\"; write one of {list}", raw.kind.get_ref());
         return wrong(&raw.kind, text);
     };
@@ -286,39 +312,33 @@ fn device(raw: raw::Device, config: &Config, beside: &Path) -> Result<DeviceConf
         };
         return wrong(&raw.bus, text);
     };
-    let unit = match u8::try_from(*raw.unit.get_ref()) {
-        Ok(unit) if (1..=device.last_unit()).contains(&unit) => unit,
-        Ok(0) => {
-            let last = device.last_unit();
-            let text =
-                format!("`unit` is 0, which speaks to all devices at once; write 1 to {last}");
-            return wrong(&raw.unit, text);
+    let (unit, target) = match device.family() {
+        Some(_) => {
+            let (unit, target) = hart::target(&raw, at)?;
+            hart::device(&raw, bus, &target, config)?;
+            (unit, Some(target))
         }
-        _ => {
-            let (unit, last) = (raw.unit.get_ref(), device.last_unit());
-            let text = format!("`unit` is {unit}; write 1 to {last}");
-            return wrong(&raw.unit, text);
+        None => {
+            hart::none(&raw, bus, config)?;
+            (modbus_unit(&raw, at, device, bus, config)?, None)
         }
     };
-    if let Some(other) = config
-        .devices
-        .iter()
-        .find(|d| d.bus == bus && d.unit == unit)
-    {
-        let text = format!(
-            "unit {unit} on bus \"{name}\" is \"{}\" already; two devices can't share an address",
-            other.tag
-        );
-        return wrong(&raw.unit, text);
-    }
     let line = config.buses.get(bus).map(|b| &b.line);
     let simulated = line == Some(&LineConfig::Simulator);
-    if simulated && !(device.is_icon() || device.is_dop()) {
+    if simulated && !(device.is_icon() || device.is_dop() || target.is_some()) {
         let mut text =
             "the simulator can be an \"icon3000v2\", an \"icon3000\" or a \"dop\" only".to_owned();
         if device.is_ddc() {
             text += "; for field units write a bus of kind = \"ddc100-simulator\"";
         }
+        return wrong(&raw.kind, text);
+    }
+    if line.is_some_and(|l| l.hart().is_some()) && target.is_none() {
+        let text = format!(
+            "`kind` is \"{}\"; on the HART line \"{name}\" it is one of {}",
+            device.key(),
+            hart::kinds()
+        );
         return wrong(&raw.kind, text);
     }
     if line.is_some_and(|l| l.ddc().is_some()) && !device.is_ddc() {
@@ -350,5 +370,46 @@ fn device(raw: raw::Device, config: &Config, beside: &Path) -> Result<DeviceConf
         unit,
         description: raw.description.map(Spanned::into_inner).unwrap_or_default(),
         profile,
+        target,
     })
+}
+
+/// The unit address of a device on a Modbus line.
+fn modbus_unit(
+    raw: &raw::Device,
+    at: usize,
+    device: Device,
+    bus: usize,
+    config: &Config,
+) -> Result<u8, Wrong> {
+    let last = device.last_unit();
+    let Some(given) = &raw.unit else {
+        let text = format!("the device has no `unit`; add it with its address, 1 to {last}");
+        return Err(Wrong { at, text });
+    };
+    let unit = match u8::try_from(*given.get_ref()) {
+        Ok(unit) if (1..=last).contains(&unit) => unit,
+        Ok(0) => {
+            let text =
+                format!("`unit` is 0, which speaks to all devices at once; write 1 to {last}");
+            return wrong(given, text);
+        }
+        _ => {
+            let text = format!("`unit` is {}; write 1 to {last}", given.get_ref());
+            return wrong(given, text);
+        }
+    };
+    let name = raw.bus.get_ref();
+    if let Some(other) = config
+        .devices
+        .iter()
+        .find(|d| d.bus == bus && d.unit == unit)
+    {
+        let text = format!(
+            "unit {unit} on bus \"{name}\" is \"{}\" already; two devices can't share an address",
+            other.tag
+        );
+        return wrong(given, text);
+    }
+    Ok(unit)
 }

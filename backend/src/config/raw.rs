@@ -43,6 +43,12 @@ pub(super) struct Bus {
     pub registers: Option<Spanned<String>>,
     pub turn_ms: Option<Spanned<i64>>,
     pub faults: Option<Vec<Spanned<String>>>,
+    pub master: Option<Spanned<String>>,
+    pub transport: Option<Spanned<String>>,
+    pub preambles: Option<Spanned<i64>>,
+    pub gap_ms: Option<Spanned<i64>>,
+    pub rts_lead_ms: Option<Spanned<i64>>,
+    pub rts_tail_ms: Option<Spanned<i64>>,
 }
 
 /// `[[device]]`.
@@ -52,7 +58,11 @@ pub(super) struct Device {
     pub tag: Spanned<String>,
     pub kind: Spanned<String>,
     pub bus: Spanned<String>,
-    pub unit: Spanned<i64>,
+    pub unit: Option<Spanned<i64>>,
+    pub poll: Option<Spanned<i64>>,
+    pub address: Option<Spanned<String>>,
+    pub hart_tag: Option<Spanned<String>>,
+    pub long_tag: Option<Spanned<String>>,
     pub profile: Option<Spanned<String>>,
     pub description: Option<Spanned<String>>,
 }

@@ -365,3 +365,163 @@ fn the_plant_without_a_configuration_has_a_network_that_can_be() {
     let clock = crate::clock::Clock::start();
     assert!(crate::sim::ddc::Network::new(ddc.shape, &units, faults, clock).is_ok());
 }
+
+// ---- HART
+
+const HART: &str = "kind = \"hart\"\nport = \"/dev/ttyUSB0\"";
+const IQ: &str = "kind = \"rotork-iq\"\nbus = \"a\"\npoll = 0";
+
+#[test]
+fn hart_lines_have_the_values_of_the_standard() {
+    use super::hart::{HartWay, Keying};
+    use shared::hart::link::Target;
+    let config = with(HART, IQ).unwrap();
+    let bus = &config.buses[0];
+    assert_eq!(
+        bus.line.to_string(),
+        "/dev/ttyUSB0 1200 8O1, primary master"
+    );
+    assert_eq!((bus.line.framing(), bus.retries), (Framing::Hart, 3));
+    assert_eq!(config.devices[0].target, Some(Target::Polling(0)));
+    let all = "master = \"secondary\"\nbaud = 1200\nmode = \"8O1\"\nretries = 1\npreambles = 8\n\
+               gap_ms = 60\nrts_lead_ms = 10\nrts_tail_ms = 0";
+    let config = with(&format!("{HART}\n{all}"), IQ).unwrap();
+    let hart = config.buses[0].line.hart().unwrap();
+    assert!(!hart.primary);
+    assert_eq!((hart.preambles, config.buses[0].retries), (Some(8), 1));
+    let HartWay::Serial { keying, .. } = &hart.way else {
+        panic!("{hart:?}");
+    };
+    let ms = Duration::from_millis;
+    let (lead, tail) = (ms(10), ms(0));
+    assert_eq!(*keying, Keying { lead, tail });
+    assert_eq!(hart.setup(1).timing.gap, 60_000);
+    let ip = with(
+        "kind = \"hart-ip\"\nhost = \"gateway\"\ntransport = \"udp\"",
+        IQ,
+    )
+    .unwrap();
+    let line = &ip.buses[0].line;
+    assert_eq!(
+        line.to_string(),
+        "gateway:5094, HART-IP over UDP, primary master"
+    );
+    assert_eq!(line.framing(), Framing::HartIp);
+    let simulated = with("kind = \"simulator\"", IQ).unwrap();
+    let line = &simulated.buses[0].line;
+    assert!(line.is_simulated() && line.framing() == Framing::Hart);
+    for (way, target) in [
+        (
+            "address = \"AEDD012345\"",
+            Target::Unique(0x2EDD, 0x01_2345),
+        ),
+        ("hart_tag = \"fv-401\"", Target::tag("FV-401").unwrap()),
+        (
+            "long_tag = \"Kühlwasser\"",
+            Target::long_tag("Kühlwasser").unwrap(),
+        ),
+    ] {
+        let device = format!("kind = \"rotork-cva\"\nbus = \"a\"\n{way}");
+        let config = with(HART, &device).unwrap();
+        assert_eq!(config.devices[0].target, Some(target), "{way}");
+    }
+}
+
+#[test]
+fn refusals_of_hart_lines_say_what_to_do() {
+    let refused = |bus: &str, device: &str, line: usize, words: &[&str]| {
+        let text = with(bus, device).unwrap_err();
+        let start = format!("plant.toml, line {line}: ");
+        assert!(text.starts_with(&start), "{text}");
+        for word in words {
+            assert!(text.contains(word), "{text} lacks {word}");
+        }
+    };
+    refused("kind = \"hart\"", IQ, 2, &["port", "/dev/ttyUSB0"]);
+    refused(&format!("{HART}\nbaud = 9601"), IQ, 5, &["9601", "1200"]);
+    refused(&format!("{HART}\nmode = \"8E1\""), IQ, 5, &["8E1", "8O1"]);
+    refused(
+        &format!("{HART}\nmaster = \"first\""),
+        IQ,
+        5,
+        &["first", "secondary"],
+    );
+    refused(&format!("{HART}\npreambles = 4"), IQ, 5, &["4", "5 to 20"]);
+    refused(&format!("{HART}\ngap_ms = 5"), IQ, 5, &["10 to 500"]);
+    refused(
+        &format!("{HART}\nhost = \"x\""),
+        IQ,
+        5,
+        &["no `host`", "remove"],
+    );
+    refused(
+        &format!("{HART}\nturnaround_ms = 5"),
+        IQ,
+        5,
+        &["no `turnaround_ms`", "remove"],
+    );
+    refused("kind = \"hart-ip\"", IQ, 2, &["host", "5094"]);
+    let ip = "kind = \"hart-ip\"\nhost = \"x\"";
+    refused(
+        &format!("{ip}\ntransport = \"tls\""),
+        IQ,
+        5,
+        &["tls", "tcp", "udp"],
+    );
+    refused(&format!("{ip}\nport = \"x\""), IQ, 5, &["no `port`"]);
+    refused(RTU, IQ, 8, &["no HART line", "hart-ip"]);
+    refused(HART, ICON, 7, &["icon3000", "rotork-iq"]);
+    let iq = "kind = \"rotork-iq\"\nbus = \"a\"";
+    refused(HART, iq, 5, &["poll", "address", "long_tag"]);
+    refused(HART, &format!("{iq}\nunit = 1"), 5, &["poll"]);
+    refused(HART, &format!("{iq}\npoll = 64"), 9, &["64", "0 to 63"]);
+    refused(
+        HART,
+        &format!("{iq}\npoll = 1\nunit = 1"),
+        10,
+        &["no `unit`", "poll"],
+    );
+    refused(
+        HART,
+        &format!("{iq}\npoll = 1\naddress = \"x\""),
+        10,
+        &["only one"],
+    );
+    refused(
+        HART,
+        &format!("{iq}\naddress = \"AEDD\""),
+        9,
+        &["ten hexadecimal"],
+    );
+    refused(
+        HART,
+        &format!("{iq}\nhart_tag = \"NINE SIGNS\""),
+        9,
+        &["8 characters"],
+    );
+    refused(
+        HART,
+        &format!("{iq}\nlong_tag = \"\""),
+        9,
+        &["32 characters"],
+    );
+    refused(
+        RTU,
+        "kind = \"none\"\nbus = \"a\"\nunit = 1\npoll = 1",
+        10,
+        &["no `poll`", "unit"],
+    );
+    let simulator = "kind = \"simulator\"";
+    refused(
+        simulator,
+        &format!("{iq}\nhart_tag = \"A\""),
+        5,
+        &["polling address"],
+    );
+    let second = format!("{IQ}\n[[device]]\ntag = \"y\"\n{ICON}");
+    refused(simulator, &second, 12, &["speaks HART", "of their own"]);
+    let second = format!("{ICON}\n[[device]]\ntag = \"y\"\n{IQ}");
+    refused(simulator, &second, 12, &["speaks Modbus", "of their own"]);
+    let second = format!("{IQ}\n[[device]]\ntag = \"y\"\n{IQ}");
+    refused(HART, &second, 11, &["same way"]);
+}

@@ -5,6 +5,7 @@
 
 mod ddc;
 mod dop;
+mod hart;
 mod icon;
 
 use crate::bus::board::Board;
@@ -294,9 +295,7 @@ impl Page<'_> {
             ToBackend::Dop(ask) => self.dop(ask).await,
             ToBackend::Ddc(ask) => return self.ddc(ask).await,
             ToBackend::Icon(ask) => self.icon(ask).await,
-            ToBackend::Hart(_) => Some(ToPage::Refused {
-                text: "This program does not serve that yet.".into(),
-            }),
+            ToBackend::Hart(ask) => self.hart(ask).await,
         };
         answer.as_ref().map(encode)
     }

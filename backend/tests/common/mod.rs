@@ -7,7 +7,9 @@ use backend::listen::Limited;
 use backend::plant::Plant;
 use backend::ws::Hosts;
 use futures_util::{SinkExt, StreamExt};
-use shared::proto::{DdcNews, DopNews, IconNews, PROGRAM_PREFIXES, ToBackend, ToPage, VERSION};
+use shared::proto::{
+    DdcNews, DopNews, HartNews, IconNews, PROGRAM_PREFIXES, ToBackend, ToPage, VERSION,
+};
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -100,6 +102,19 @@ impl Page {
                 Some(Ok(Message::Text(text))) => return Some(serde_json::from_str(&text).unwrap()),
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return None,
                 Some(Ok(_)) => {}
+            }
+        }
+    }
+
+    /// The next news about HART devices, progress left out.
+    pub async fn hart(&mut self) -> HartNews {
+        loop {
+            let next = timeout(WAIT, self.socket.next()).await.expect("news");
+            if let Some(Ok(Message::Text(text))) = next
+                && let Some(news) = HartNews::from_text(&text)
+                && !matches!(news, HartNews::Progress { .. })
+            {
+                return news;
             }
         }
     }

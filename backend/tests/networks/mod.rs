@@ -40,6 +40,7 @@ pub fn units(kinds: &[Device]) -> Vec<DeviceConfig> {
         unit: u8::try_from(at + 1).unwrap(),
         description: String::new(),
         profile: None,
+        target: None,
     };
     kinds.iter().enumerate().map(unit).collect()
 }

@@ -17,7 +17,7 @@ pub(crate) mod decode;
 mod effect;
 pub mod export;
 pub mod frame;
-pub(crate) mod ip;
+pub mod ip;
 pub mod link;
 pub mod model;
 pub mod ne107;

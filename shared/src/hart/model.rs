@@ -78,6 +78,13 @@ impl Command {
         self.effects == [Effect::Reads] && self.request.iter().all(|f| f.effects.is_none())
     }
 
+    /// True if a request may have so many bytes, and then changes nothing.
+    #[must_use]
+    pub fn reads_with(&self, len: usize) -> bool {
+        let has = |f: &Form| f.lengths.iter().any(|l| usize::from(*l) == len);
+        self.request.iter().any(has) && self.effects_of(len) == [Effect::Reads]
+    }
+
     /// What a request with so many bytes may do.
     #[must_use]
     pub fn effects_of(&self, len: usize) -> &'static [Effect] {

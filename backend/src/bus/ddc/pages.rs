@@ -69,8 +69,8 @@ impl Actor {
                     }
                 }
             }
-            // No unit of a network has diagnostic objects, or the files of an ICON3000.
-            Command::Dop { .. } | Command::Icon { .. } => {}
+            // No unit of a network has diagnostic objects, or the files of an ICON3000, or speaks HART.
+            Command::Dop { .. } | Command::Icon { .. } | Command::Hart(_) => {}
             Command::Leave { client } => {
                 for unit in &mut self.units {
                     unit.plan.leave(client);

@@ -13,6 +13,7 @@ fn unit() -> DopUnit {
         unit: 4,
         description: String::new(),
         profile: Some(crate::sim::dop_profile()),
+        target: None,
     };
     DopUnit::of(&device, &Gate::of(std::slice::from_ref(&device))).unwrap()
 }

@@ -89,6 +89,7 @@ fn device(unit: u8, kind: Device, profile: Option<&str>) -> DeviceConfig {
         unit,
         description: String::new(),
         profile: profile.map(|json| Arc::new(Profile::from_json(json).unwrap())),
+        target: None,
     }
 }
 

@@ -46,7 +46,7 @@ impl Paint {
 }
 
 /// One frame or run of noise with its fields, without the last line end.
-pub(super) fn write_frame(
+pub(in crate::cli) fn write_frame(
     out: &mut impl Write,
     colour: bool,
     index: u32,

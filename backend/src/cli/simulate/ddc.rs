@@ -31,6 +31,7 @@ const SHORTEST_GAP: Duration = Duration::from_millis(4);
 /// How the network is.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "With --ddc100")]
+#[group(id = "network_options")]
 pub(super) struct Args {
     /// Number of units, of all types in turn, or types with their numbers: `mx:10,uec:5,io:1`.
     #[arg(long, value_name = "UNITS", default_value = "12", value_parser = units, requires = "ddc100")]
@@ -127,6 +128,7 @@ pub(super) async fn run(args: &Args, paths: &[String], baud: u32) -> ExitCode {
             unit,
             description: String::new(),
             profile: None,
+            target: None,
         })
         .collect();
     let network = match Network::new(shape, &devices, &args.fault, Clock::start()) {

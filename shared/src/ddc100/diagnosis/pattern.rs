@@ -29,11 +29,10 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
     let used = |port| faults.has(port) && faults.is_up(port);
     let mut untried = 0_usize;
     let mut heard = Vec::with_capacity(faults.len());
-    let mut unsteady = Vec::new();
     for (place, (unit, pair)) in faults.units().enumerate() {
         let end = End::Unit { place, unit };
         if faults.is_unsteady(unit) {
-            unsteady.push(unit);
+            findings.push(Finding::Unsteady(end));
             continue;
         }
         let state = |port| {
@@ -55,9 +54,6 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
                 two: !two,
             });
         }
-    }
-    if !unsteady.is_empty() {
-        findings.push(Finding::Unsteady(unsteady));
     }
     for port in HostPort::BOTH {
         if faults.has(port) && !faults.is_up(port) {

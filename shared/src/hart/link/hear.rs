@@ -14,11 +14,9 @@ impl Link {
                 self.stats.damaged = self.stats.damaged.saturating_add(1);
                 self.tell(Event::Damaged);
                 let ours = self.job.as_ref().is_some_and(|j| began >= j.began);
+                self.turn = Turn::Unknown;
                 if ours && matches!(self.phase, Phase::Waiting { .. }) {
-                    self.turn = Turn::Yield;
                     self.missed(Failure::Damaged, now);
-                } else {
-                    self.turn = Turn::Unknown;
                 }
             }
             Heard::Frame(frame) => self.frame(frame, now),
@@ -36,7 +34,7 @@ impl Link {
                 return;
             }
             Type::Stx => {
-                self.turn = Turn::Unknown;
+                self.turn = Turn::Request;
                 self.stats.overheard = self.stats.overheard.saturating_add(1);
                 if ours {
                     self.tell(Event::Twin);
@@ -95,14 +93,13 @@ impl Link {
             self.tell(Event::Stray(frame.bytes));
             return;
         };
-        match answer.code() {
-            Some(_) => {
+        match answer.communication_error() {
+            None => {
                 self.stats.answered = self.stats.answered.saturating_add(1);
                 self.finish(Ok(answer), now);
             }
-            None => {
+            Some(errors) => {
                 self.stats.refused = self.stats.refused.saturating_add(1);
-                let errors = answer.status_byte();
                 self.missed(Failure::Communication(errors), now);
             }
         }

@@ -1,5 +1,5 @@
 //! The link layer of a HART master as a pure state machine: who may send when, and what answers
-//! what.
+//! what. On top of it, [`Device`] and [`Scan`] turn devices into requests.
 //!
 //! # How to drive it
 //!
@@ -26,6 +26,7 @@
 //! | heard last | we may begin |
 //! |---|---|
 //! | nothing for RT1, or a request, or something damaged | after RT1 of silence |
+//! | a request, while a device bursts | after twice RT1: the burst device is first |
 //! | an answer to the other master | at once, within HOLD |
 //! | an answer to us | RT2 behind it, so that the other master may go first |
 //! | a burst to the other master | at once, within HOLD |
@@ -35,6 +36,9 @@
 //! not begin at the same moment. A master never begins while bytes or a carrier are heard. After a
 //! request that failed for good it leaves the line for the RT1 of a secondary master.
 //!
+//! Source: the timers are those of the table of timers; which of them follows what is reading G19,
+//! and agrees with the state machine (watching, enabled, using) that open implementations follow.
+//!
 //! # What answers
 //!
 //! A reply answers a request if its check byte holds, if it names the same device, master and
@@ -42,6 +46,7 @@
 //! answered, the same command of the same device is not asked again before [`Link`] is certain that
 //! no answer to the old one can come.
 
+mod device;
 mod ear;
 mod event;
 mod hear;
@@ -52,6 +57,10 @@ mod timing;
 
 use super::frame::Address;
 use crate::capture::Micros;
+pub use device::{
+    Device, Identity, LAST_OF_HART_5, LAST_POLLING, LONG_TAG, Scan, Sighting, Step, TAG, Target,
+    overview, reads, usual_data,
+};
 use ear::Ear;
 pub use event::{Event, Stats};
 pub use request::{Answer, Done, Failure, Request};
@@ -126,6 +135,8 @@ enum Turn {
     Ours(Micros),
     /// The other master's first.
     Yield,
+    /// Nothing, behind a request: a burst device may go on once it is not answered.
+    Request,
 }
 
 #[derive(Clone, Debug)]
@@ -264,7 +275,11 @@ impl Link {
 
     /// A modem says whether it hears a carrier; lines without one never call this.
     pub fn carrier(&mut self, on: bool, now: Micros) {
-        if !on && self.carrier && self.active < now && matches!(self.turn, Turn::Unknown) {
+        if !on
+            && self.carrier
+            && self.active < now
+            && matches!(self.turn, Turn::Unknown | Turn::Request)
+        {
             self.active = now;
         }
         self.carrier = on;
@@ -287,7 +302,8 @@ impl Link {
     pub fn sent(&mut self, now: Micros) {
         self.active = self.active.max(now);
         if let Phase::Sending { .. } = self.phase {
-            let wait = self.setup.timing.quiet(self.setup.primary);
+            // Longer than the slave time-out, for both kinds of master.
+            let wait = self.setup.timing.quiet_primary;
             self.phase = Phase::Waiting {
                 until: now.plus(wait),
             };
@@ -365,13 +381,17 @@ impl Link {
             Turn::Yield if !self.hears_bursts(now) => {
                 window(self.active.plus(timing.link_grant), timing.window())
             }
-            Turn::Yield | Turn::Unknown => None,
+            Turn::Yield | Turn::Unknown | Turn::Request => None,
         };
         if let Some(start) = early {
             return start;
         }
         // The turns of the two masters alternate.
-        let first = self.active.plus(timing.quiet(self.setup.primary));
+        let mut quiet = timing.quiet(self.setup.primary);
+        if self.turn == Turn::Request && self.hears_bursts(now) {
+            quiet = quiet.saturating_mul(2);
+        }
+        let first = self.active.plus(quiet);
         let round = timing.link_grant.saturating_mul(2).max(1);
         let passed = now.since(first).checked_div(round).unwrap_or(0);
         let turn = first.plus(passed.saturating_mul(round));
@@ -395,7 +415,7 @@ impl Link {
             .characters(bytes.len())
             .saturating_mul(2)
             .saturating_add(timing.quiet_secondary);
-        self.turn = Turn::Unknown;
+        self.turn = Turn::Request;
         self.phase = Phase::Sending {
             until: now.plus(longest),
         };

@@ -1,7 +1,7 @@
 //! What a master sends, and what comes of it.
 
 use crate::capture::Micros;
-use crate::hart::frame::{Address, FILL, Head, extended, long_address, seal};
+use crate::hart::frame::{Address, FILL, Head, Type, check, extended, long_address, seal};
 use core::fmt;
 
 /// The command that carries another one.
@@ -77,6 +77,16 @@ impl Request {
         bytes
     }
 
+    /// The reply in this frame, from the delimiter to the check byte, if it is sound and answers
+    /// this request of a master of this kind.
+    #[must_use]
+    pub fn answer(&self, frame: &[u8], primary: bool) -> Option<Answer> {
+        let answer = Answer::of(frame)?;
+        let whole = answer.head.total() == frame.len() && check(frame) == 0;
+        let kind = answer.head.delimiter.kind() == Type::Ack;
+        (whole && kind && self.fits(&answer.head, frame, primary)).then_some(answer)
+    }
+
     /// True if a reply with this head answers it.
     pub(super) fn fits(&self, head: &Head, frame: &[u8], primary: bool) -> bool {
         let address = match self.address {
@@ -127,9 +137,17 @@ impl Answer {
         (first & 0x80 == 0).then_some(first)
     }
 
-    /// The first status byte as it is.
-    pub(super) fn status_byte(&self) -> u8 {
-        self.status()[0]
+    /// The errors of the line that the device reports instead of a response code.
+    #[must_use]
+    pub fn communication_error(&self) -> Option<u8> {
+        let [first, _] = self.status();
+        (first & 0x80 != 0).then_some(first)
+    }
+
+    /// The number of the command, that of command 31 if it is inside.
+    #[must_use]
+    pub fn number(&self) -> u16 {
+        extended(&self.head, &self.frame).unwrap_or(u16::from(self.head.command))
     }
 
     /// The device status.
