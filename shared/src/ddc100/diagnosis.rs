@@ -70,7 +70,7 @@ pub enum Finding {
     Untried(usize),
     /// The unit does not answer, although the signal passes it (examples 2 and 6).
     OffLine(End),
-    /// A break or short between two neighbours (example 3).
+    /// A break or short between two neighbours (example 3); only unsteady units may stand between.
     Break {
         /// The end towards host port 1.
         from: End,

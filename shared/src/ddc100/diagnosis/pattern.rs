@@ -14,6 +14,21 @@ struct Heard {
 }
 
 impl Heard {
+    /// True if no unit stands behind it, seen from a port.
+    const fn is_last(&self, port: HostPort, all: usize) -> bool {
+        match port {
+            HostPort::One => self.place().saturating_add(1) == all,
+            HostPort::Two => self.place() == 0,
+        }
+    }
+
+    const fn place(&self) -> usize {
+        match self.end {
+            End::Unit { place, .. } => place,
+            End::Port(_) => 0,
+        }
+    }
+
     fn unit(&self) -> u8 {
         match self.end {
             End::Unit { unit, .. } => unit,
@@ -61,9 +76,21 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
         }
     }
     match (used(HostPort::One), used(HostPort::Two)) {
-        (true, true) => both(&heard, &mut findings),
-        (true, false) => single(heard.iter(), HostPort::One, shape, &mut findings),
-        (false, true) => single(heard.iter().rev(), HostPort::Two, shape, &mut findings),
+        (true, true) => both(&heard, faults.len(), &mut findings),
+        (true, false) => single(
+            heard.iter(),
+            HostPort::One,
+            shape,
+            faults.len(),
+            &mut findings,
+        ),
+        (false, true) => single(
+            heard.iter().rev(),
+            HostPort::Two,
+            shape,
+            faults.len(),
+            &mut findings,
+        ),
         (false, false) => {}
     }
     if untried > 0 {
@@ -78,7 +105,7 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
 }
 
 /// A loop with two ports.
-fn both(heard: &[Heard], findings: &mut Vec<Finding>) {
+fn both(heard: &[Heard], all: usize, findings: &mut Vec<Finding>) {
     if heard.is_empty() {
         return;
     }
@@ -87,7 +114,7 @@ fn both(heard: &[Heard], findings: &mut Vec<Finding>) {
     let first = heard.iter().position(|h| h.two);
     if last.is_none() && first.is_none() {
         findings.push(Finding::Nothing {
-            units: heard.len(),
+            units: all,
             multi_drop: false,
             port: None,
         });
@@ -99,7 +126,7 @@ fn both(heard: &[Heard], findings: &mut Vec<Finding>) {
     let mut silent: Vec<u8> = Vec::new();
     let cut = |silent| {
         let from = last.and_then(|l| heard.get(l));
-        broken(from, heard.get(gap), heard, silent)
+        broken(from, heard.get(gap), all, silent)
     };
     for (at, unit) in heard.iter().enumerate() {
         if !whole && at == gap {
@@ -124,7 +151,7 @@ fn both(heard: &[Heard], findings: &mut Vec<Finding>) {
 }
 
 /// A break between what port 1 reaches last and what port 2 reaches first.
-fn broken(from: Option<&Heard>, to: Option<&Heard>, heard: &[Heard], silent: Vec<u8>) -> Finding {
+fn broken(from: Option<&Heard>, to: Option<&Heard>, all: usize, silent: Vec<u8>) -> Finding {
     let from_end = from.map_or(End::Port(HostPort::One), |h| h.end);
     let to_end = to.map_or(End::Port(HostPort::Two), |h| h.end);
     if !silent.is_empty() {
@@ -134,14 +161,15 @@ fn broken(from: Option<&Heard>, to: Option<&Heard>, heard: &[Heard], silent: Vec
             silent,
         };
     }
+    // With an unsteady unit in between, it may as well be the cable at that one.
     match (from, to) {
-        (None, _) => Finding::PortLost {
+        (None, Some(next)) if next.place() == 0 => Finding::PortLost {
             port: HostPort::One,
-            next: heard.first().map_or(to_end, |h| h.end),
+            next: next.end,
         },
-        (_, None) => Finding::PortLost {
+        (Some(next), None) if next.place().saturating_add(1) == all => Finding::PortLost {
             port: HostPort::Two,
-            next: heard.last().map_or(from_end, |h| h.end),
+            next: next.end,
         },
         _ => Finding::Break {
             from: from_end,
@@ -155,6 +183,7 @@ fn single<'a>(
     heard: impl ExactSizeIterator<Item = &'a Heard> + DoubleEndedIterator,
     port: HostPort,
     shape: DdcShape,
+    all: usize,
     findings: &mut Vec<Finding>,
 ) {
     let heard: Vec<&Heard> = heard.collect();
@@ -164,7 +193,7 @@ fn single<'a>(
     let answers = |h: &Heard| h.one || h.two;
     let Some(last) = heard.iter().rposition(|h| answers(h)) else {
         findings.push(Finding::Nothing {
-            units: heard.len(),
+            units: all,
             multi_drop: shape == DdcShape::MultiDrop,
             port: Some(port),
         });
@@ -176,7 +205,7 @@ fn single<'a>(
     let from = near.last().map_or(End::Port(port), |h| h.end);
     match far {
         [] => {}
-        [unit] => findings.push(Finding::LastUnit {
+        [unit] if unit.is_last(port, all) => findings.push(Finding::LastUnit {
             from,
             unit: unit.end,
         }),

@@ -396,3 +396,57 @@ fn an_unsteady_unit_is_left_out() {
     let calm = pass(1, HostPort::One, &[]);
     assert_eq!(calm.findings, [Finding::NoFault]);
 }
+
+/// Next to an unsteady unit the place is told as far as it is known: found by days of polling.
+#[test]
+fn unsteady_units_widen_the_place() {
+    let check = |shape, patterns: [&str; 2], expected: &[&str]| {
+        let ports = if shape == Loop { 2 } else { 1 };
+        let cells = patterns.map(|p| p.split(' ').collect::<Vec<_>>());
+        let units = 1..=u8::try_from(cells[0].len()).unwrap();
+        let mut table = FaultTable::new(units.clone(), shape == Loop);
+        for round in 0..12 {
+            for (at, port) in HostPort::BOTH.into_iter().enumerate().take(ports) {
+                for (unit, cell) in units.clone().zip(&cells[round % 2]) {
+                    table.note(unit, port, cell.as_bytes()[at] == b'1');
+                }
+            }
+        }
+        let found = diagnose(shape, &table);
+        let texts: Vec<String> = found.findings.iter().map(Finding::to_string).collect();
+        assert_eq!(texts.len(), expected.len(), "{texts:?}");
+        for (text, part) in texts.iter().zip(expected) {
+            assert!(text.contains(part), "{text:?} lacks {part:?}");
+        }
+        assert_eq!(found.unsettled, 0);
+    };
+    let unsteady = "comes and goes";
+    check(
+        Loop,
+        ["01 01 01", "01 01 11"],
+        &[
+            unsteady,
+            "between unit 2 and host port 2, or loss of the port",
+        ],
+    );
+    check(
+        Loop,
+        ["10 10 10", "11 10 10"],
+        &[unsteady, "between host port 1 and unit 2, or loss"],
+    );
+    check(
+        Loop,
+        ["01 00 10", "01 11 10"],
+        &[unsteady, "between unit 1 and unit 3"],
+    );
+    check(
+        SingleEnded,
+        ["0 1 0", "0 1 1"],
+        &[unsteady, "No unit answers from unit 2 on"],
+    );
+    check(
+        SingleEnded,
+        ["1 0", "1 1"],
+        &[unsteady, "No unit answers: look at host port 1"],
+    );
+}

@@ -71,6 +71,10 @@ impl fmt::Display for Finding {
                 "{} is off-line: the signal passes it, but it does not answer. Most likely it has no power.",
                 Capital(end)
             ),
+            Self::Break { from, to } if matches!((from, to), (End::Port(_), _) | (_, End::Port(_))) => write!(
+                f,
+                "Break or short between {from} and {to}, or loss of the port: look at the cable, its terminals and the power of the converter there."
+            ),
             Self::Break { from, to } => write!(
                 f,
                 "Break or short between {from} and {to}: look at the cable, its terminals and its termination there."
