@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use shared::capture::{Capture, Direction, Micros};
 use shared::frame::{Framing, Role};
 use shared::proto::{
-    Block, DopAsk, DopNews, IconAsk, IconNews, IconStep, Outcome, ToBackend, ToPage, VERSION, Way,
+    Block, DdcNews, DopAsk, DopNews, IconAsk, IconNews, IconStep, Outcome, ToBackend, ToPage,
+    VERSION, Way,
 };
 use shared::session::Session;
 use tungstenite::stream::MaybeTlsStream;
@@ -25,6 +26,8 @@ pub struct Page {
     news: VecDeque<DopNews>,
     /// News about an ICON3000 that nobody has looked at yet.
     icon: VecDeque<IconNews>,
+    /// News about DDC-100 networks that nobody has looked at yet.
+    networks: VecDeque<DdcNews>,
 }
 
 impl Page {
@@ -46,6 +49,7 @@ impl Page {
             session: Session::new(framing),
             news: VecDeque::new(),
             icon: VecDeque::new(),
+            networks: VecDeque::new(),
         };
         page.send(&ToBackend::Hello { version: VERSION });
         page.send(&ToBackend::Subscribe {
@@ -94,6 +98,10 @@ impl Page {
             }
             if let Some(news) = IconNews::from_text(&text) {
                 self.icon.push_back(news);
+                return None;
+            }
+            if let Some(news) = DdcNews::from_text(&text) {
+                self.networks.push_back(news);
                 return None;
             }
             let message: ToPage = serde_json::from_str(&text).expect("a message of the protocol");
@@ -215,6 +223,25 @@ impl Page {
         loop {
             if let Some(news) = self.news.pop_front() {
                 return news;
+            }
+            assert!(start.elapsed() < PATIENCE, "no news within {PATIENCE:?}");
+            // Ticks come every two seconds, so this ends.
+            let _other = self.receive_any();
+        }
+    }
+
+    /// Waits for the news about a DDC-100 network that `find` finds.
+    ///
+    /// # Panics
+    ///
+    /// If it does not come in time.
+    pub fn network<T>(&mut self, mut find: impl FnMut(DdcNews) -> Option<T>) -> T {
+        let start = Instant::now();
+        loop {
+            while let Some(news) = self.networks.pop_front() {
+                if let Some(found) = find(news) {
+                    return found;
+                }
             }
             assert!(start.elapsed() < PATIENCE, "no news within {PATIENCE:?}");
             // Ticks come every two seconds, so this ends.

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use serde_json::{Value, json};
 use shared::frame::Framing;
-use shared::proto::{Block, DopNews, IconStep, Outcome, TableName};
+use shared::proto::{Block, DdcAsk, DdcNews, DopNews, IconStep, Outcome, TableName, ToBackend};
 use tests::page::Page;
 use tests::peers::{mbpoll, python};
 use tests::process::Process;
@@ -475,4 +475,186 @@ fn pymodbus_and_we_read_the_same_objects_over_a_serial_line() {
     let objects = pymodbus_reads_objects("rtu", &theirs);
     let bus = format!("kind = \"rtu\"\nport = \"{theirs}\"\nbaud = 38400\nmode = \"8N1\"");
     check_objects(&bus, Framing::Rtu, "rtu", &objects);
+}
+
+// ---- DDC-100
+
+/// Our simulated network behind one serial line, and what pymodbus reads of it.
+fn pymodbus_reads_field_units(framing: &str) -> Vec<Value> {
+    let (_cable, ours, theirs) = cable();
+    let mut command = Command::new(binary());
+    command.args(["simulate", "--ddc100", &ours, "--framing", framing]);
+    command.args(["--units", "mx:1,uec:1,clamshell:1,io:1"]);
+    let (_simulator, ()) = Process::start(&mut command, "build the backend first", |line| {
+        line.contains("units 1 to 4").then_some(())
+    });
+    let output = python()
+        .arg(script("ddc100.py"))
+        .args([framing, &theirs])
+        .output()
+        .expect("python starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    text.lines()
+        .map(|l| serde_json::from_str(l).expect("JSON lines"))
+        .collect()
+}
+
+/// Checks the answers of the simulated units against LMAIM4019-00, section 3.
+fn check_field_units(answers: &[Value]) {
+    let of = |unit: u64, ask: &str| {
+        let found = answers
+            .iter()
+            .find(|a| a["unit"] == unit && a["ask"] == ask);
+        found
+            .unwrap_or_else(|| panic!("nothing about {ask} of unit {unit}"))
+            .clone()
+    };
+    let list = |unit: u64, ask: &str, key: &str| -> Vec<Value> {
+        let answer = of(unit, ask);
+        let list = answer[key].as_array();
+        list.unwrap_or_else(|| panic!("{answer}")).clone()
+    };
+    let registers = |unit, ask: &str| -> Vec<u64> {
+        let words = list(unit, ask, "registers");
+        words.iter().filter_map(Value::as_u64).collect()
+    };
+    let bits = |unit, ask: &str| -> Vec<bool> {
+        let bits = list(unit, ask, "bits");
+        bits.iter().filter_map(Value::as_bool).collect()
+    };
+    for unit in 1..=4 {
+        // Table 3.5: registers 1 to 56; the poll of section 3.2.3 is a part of them.
+        let (mut all, poll) = (registers(unit, "all"), registers(unit, "poll"));
+        // Register 10 bit 12, "unit was reset", is said once; an I/O module has no such bit.
+        let reset = u64::from(unit != 4);
+        assert_eq!(
+            (all[9] >> 12 & 1, poll[2] >> 12 & 1),
+            (reset, 0),
+            "unit {unit}"
+        );
+        all[9] &= !(1 << 12);
+        assert_eq!(
+            (all.len(), &all[7..13]),
+            (56, poll.as_slice()),
+            "unit {unit}"
+        );
+        // Function 04 reads the same registers (reading D6).
+        assert_eq!(registers(unit, "input registers"), poll[..2], "unit {unit}");
+        assert_eq!(bits(unit, "coils").len(), 16, "nine coils in two bytes");
+        // Table 3.2: no function 02 in an MX/DDC, and no 17 in any.
+        if unit == 1 {
+            assert_eq!(of(unit, "inputs")["exception"], json!(1));
+        } else {
+            // Table 3.4: inputs 129 to 144 are register 9.
+            let word = bits(unit, "inputs");
+            let word = word
+                .iter()
+                .rev()
+                .fold(0, |sum, bit| sum * 2 + u64::from(*bit));
+            assert_eq!(word, poll[1], "unit {unit}");
+        }
+        assert_eq!(of(unit, "report")["exception"], json!(1), "unit {unit}");
+        assert_eq!(of(unit, "beyond")["exception"], json!(2), "unit {unit}");
+        let echo = of(unit, "echo").to_string();
+        assert!(
+            echo.contains("[165,182]") || echo.contains("[165, 182]") || echo.contains("42422"),
+            "{echo}"
+        );
+    }
+    // A valve that is closed: register 8 says 0 percent, register 9 bit 1 closed, bit 0 not open;
+    // register 12 bit 0 remote (table 3.5).
+    for unit in [1, 2] {
+        let poll = registers(unit, "poll");
+        assert_eq!((poll[0], poll[1] & 0b11), (0, 0b10), "unit {unit}");
+        assert_eq!(poll[4] & 1, 1, "unit {unit}");
+    }
+    // Section 4.3.1: a UEC-3-DDC without its second channel says so in bit 11 of register 9; bit 10
+    // is clear on both, since channel A was just used.
+    assert_eq!(registers(2, "poll")[1] >> 10 & 0b11, 0b10);
+    assert_eq!(registers(1, "poll")[1] >> 10 & 0b01, 0b00);
+    // Table 3.7: 256 opens. Bit 3 of register 9 is "opening", coil 2 the open contactor.
+    let opening = registers(2, "opening");
+    assert_eq!(opening[1] >> 3 & 1, 1, "{opening:?}");
+    assert!(bits(2, "opening coils")[1]);
+    let nobody = of(9, "nobody");
+    assert!(nobody.get("error").is_some(), "{nobody}");
+}
+
+#[test]
+fn pymodbus_reads_the_simulated_network_over_rtu() {
+    check_field_units(&pymodbus_reads_field_units("rtu"));
+}
+
+#[test]
+fn pymodbus_reads_the_simulated_network_over_ascii() {
+    check_field_units(&pymodbus_reads_field_units("ascii"));
+}
+
+/// A device of pymodbus as the only unit of a multi-drop line; our backend polls it.
+fn backend_polls_pymodbus(kind: &str, framing: Framing) {
+    let (_cable, ours, theirs) = cable();
+    let mut command = python();
+    command.arg(script("server.py")).args([kind, &theirs]);
+    let (_device, ()) = Process::start(&mut command, "see the peers", |line| {
+        (line == "ready").then_some(())
+    });
+    let config = format!(
+        "[[bus]]\nname = \"peer\"\nkind = \"ddc100\"\nshape = \"multi-drop\"\nport = \"{ours}\"\n\
+         framing = \"{kind}\"\nregisters = \"5-16\"\n\n\
+         [[device]]\ntag = \"P-6\"\nkind = \"ddc100-mx\"\nbus = \"peer\"\nunit = 6\n\n\
+         [[device]]\ntag = \"P-7\"\nkind = \"ddc100-uec\"\nbus = \"peer\"\nunit = 7\n"
+    );
+    let file = std::env::temp_dir().join(format!(
+        "valvescope-peer-ddc-{}-{kind}.toml",
+        std::process::id()
+    ));
+    std::fs::write(&file, config).expect("a temporary file");
+    let server = Server::start(&["--config", file.to_str().expect("a path in UTF-8")]);
+    let mut page = Page::open(server.address(), "peer", framing);
+    page.send(&ToBackend::Ddc(DdcAsk::Follow { bus: "peer".into() }));
+    let mut seen = (None, None);
+    page.network(|news| {
+        if let DdcNews::Unit {
+            unit,
+            outcome,
+            request,
+            response,
+            fault_a,
+            fault_b,
+            ..
+        } = news
+        {
+            assert_eq!(fault_b, None, "there is one port");
+            match unit {
+                7 => seen.1 = Some((outcome, fault_a, request, response)),
+                _ => seen.0 = Some((outcome, fault_a)),
+            }
+        }
+        (seen.0.is_some() && seen.1.is_some()).then_some(())
+    });
+    // Nobody is there with address 6. (A server of pymodbus answers with exception 4 or not at all.)
+    let absent = seen.0.expect("it was polled");
+    assert_ne!(absent.0, Outcome::Ok);
+    let want: Vec<u8> = (4..16)
+        .flat_map(|a: u16| a.wrapping_mul(31).wrapping_add(7).to_be_bytes())
+        .collect();
+    let want = format!("0318{}", shared::render::hex(&want));
+    let good = (Outcome::Ok, Some(false), "030004000C".to_owned(), want);
+    assert_eq!(seen.1, Some(good));
+    std::fs::remove_file(file).expect("it was there");
+}
+
+#[test]
+fn our_backend_polls_pymodbus_as_a_field_unit_over_rtu() {
+    backend_polls_pymodbus("rtu", Framing::Rtu);
+}
+
+#[test]
+fn our_backend_polls_pymodbus_as_a_field_unit_over_ascii() {
+    backend_polls_pymodbus("ascii", Framing::Ascii);
 }

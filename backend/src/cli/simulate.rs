@@ -63,7 +63,7 @@ pub(super) struct Args {
     #[command(flatten)]
     dop: DopArgs,
     #[command(flatten)]
-    network: ddc::Args,
+    network: ddc::NetworkArgs,
     #[command(flatten)]
     valve: hart::HartArgs,
 }

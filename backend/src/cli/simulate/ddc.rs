@@ -31,8 +31,7 @@ const SHORTEST_GAP: Duration = Duration::from_millis(4);
 /// How the network is.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "With --ddc100")]
-#[group(id = "network_options")]
-pub(super) struct Args {
+pub(super) struct NetworkArgs {
     /// Number of units, of all types in turn, or types with their numbers: `mx:10,uec:5,io:1`.
     #[arg(long, value_name = "UNITS", default_value = "12", value_parser = units, requires = "ddc100")]
     units: Units,
@@ -108,7 +107,7 @@ fn units(text: &str) -> Result<Units, String> {
 }
 
 /// Runs the network on these ports until it is asked to end.
-pub(super) async fn run(args: &Args, paths: &[String], baud: u32) -> ExitCode {
+pub(super) async fn run(args: &NetworkArgs, paths: &[String], baud: u32) -> ExitCode {
     let shape = match args.shape {
         Some(ShapeArg::Loop) => DdcShape::Loop,
         Some(ShapeArg::SingleEnded) => DdcShape::SingleEnded,
