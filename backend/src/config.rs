@@ -7,6 +7,7 @@ mod ddc;
 pub mod hart;
 mod profile;
 mod raw;
+mod tags;
 #[cfg(test)]
 mod tests;
 

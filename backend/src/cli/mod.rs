@@ -1,5 +1,6 @@
 //! The command line.
 
+mod ddc100;
 mod decode;
 mod diff;
 mod dop;
@@ -50,12 +51,14 @@ enum Verb {
     Snapshot(snapshot::Args),
     /// Compare two snapshots by meaning.
     Diff(diff::Args),
+    /// DDC-100 networks: poll one at the terminal, estimate how long a scan takes.
+    Ddc100(ddc100::Ddc100Args),
     /// Print the register map of a device.
     Maps(maps::Args),
     /// Look for HART devices on a line or behind a gateway, and read them.
     #[command(subcommand)]
     Hart(hart::Verb),
-    /// Be an actuator that other programs can read.
+    /// Be an actuator, or a DDC-100 network of many, that other programs can read.
     Simulate(simulate::Args),
 }
 
@@ -69,6 +72,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Verb::Dop(args)) => dop::run(&args),
         Some(Verb::Snapshot(args)) => snapshot::run(&args),
         Some(Verb::Diff(args)) => diff::run(&args),
+        Some(Verb::Ddc100(args)) => ddc100::run(&args),
         Some(Verb::Maps(args)) => maps::run(&args),
         Some(Verb::Hart(verb)) => hart::run(&verb),
         Some(Verb::Simulate(args)) => simulate::run(&args),

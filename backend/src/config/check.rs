@@ -1,6 +1,8 @@
 //! From what is written to what is meant.
 
-use super::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, ddc, hart, profile, raw};
+use super::{
+    BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode, ddc, hart, profile, raw, tags,
+};
 use shared::device::{Device, Family};
 use shared::frame::Framing;
 use std::ops::RangeInclusive;
@@ -63,6 +65,12 @@ pub(super) fn check(file: raw::File, beside: &Path) -> Result<Config, Wrong> {
     for bus in &file.bus {
         let bus = self::bus(bus, &config)?;
         config.buses.push(bus);
+    }
+    for (at, bus) in file.bus.iter().enumerate() {
+        if let Some(name) = &bus.get_ref().tags {
+            let units = tags::read(name, beside, at, &config)?;
+            config.devices.extend(units);
+        }
     }
     for device in file.device {
         let at = device.span().start;
@@ -147,6 +155,7 @@ fn strays(raw: &raw::Bus, kind: &str) -> Result<(), Wrong> {
         (raw.shape.as_ref(), ddc, "shape"),
         (raw.framing.as_ref(), ddc, "framing"),
         (raw.registers.as_ref(), ddc, "registers"),
+        (raw.tags.as_ref(), ddc, "tags"),
         (
             raw.faults.as_ref().and_then(|f| f.first()),
             kind == "ddc100-simulator",

@@ -238,7 +238,7 @@ pub(super) fn network(bus: &BusConfig, raw: &raw::Bus, config: &Config) -> Resul
     if units.is_empty() {
         let text = format!(
             "the network \"{}\" has no units; add a [[device]] for each, in the order of the cable \
-             from host port 1",
+             from host port 1, or a tag list as tags = \"units.csv\"",
             bus.name
         );
         return wrong(&raw.name, text);

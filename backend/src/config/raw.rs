@@ -49,6 +49,7 @@ pub(super) struct Bus {
     pub gap_ms: Option<Spanned<i64>>,
     pub rts_lead_ms: Option<Spanned<i64>>,
     pub rts_tail_ms: Option<Spanned<i64>>,
+    pub tags: Option<Spanned<String>>,
 }
 
 /// `[[device]]`.

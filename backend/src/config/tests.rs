@@ -525,3 +525,80 @@ fn refusals_of_hart_lines_say_what_to_do() {
     let second = format!("{IQ}\n[[device]]\ntag = \"y\"\n{IQ}");
     refused(HART, &second, 11, &["same way"]);
 }
+
+/// A network with this tag list beside its configuration, and the devices given.
+fn with_tags(name: &str, csv: &str, devices: &str) -> Result<Config, String> {
+    let directory =
+        std::env::temp_dir().join(format!("valvescope-tags-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&directory).unwrap();
+    std::fs::write(directory.join("units.csv"), csv).unwrap();
+    let toml = format!("[[bus]]\nname = \"a\"\n{LOOP}\ntags = \"units.csv\"\n{devices}");
+    let config = Config::parse(&directory.join("plant.toml"), &toml);
+    std::fs::remove_dir_all(&directory).unwrap();
+    config.map_err(|e| e.to_string())
+}
+
+#[test]
+fn a_tag_list_names_the_units_of_a_network() {
+    // In the style of table 6.1: points of units, and lines that name the units themselves.
+    let list = "Tag name,Description,Unit,Type,Register\n\
+                80-HS-4141A,Open actuator,7,,40001\n\
+                MOV-4141,Inlet,7,ddc100-uec,\n\
+                80-POS-4142,Position,3,ddc100-mx,40008\n";
+    let after = "[[device]]\ntag = \"x\"\nkind = \"ddc100-io\"\nbus = \"a\"\nunit = 1\n";
+    let config = with_tags("good", list, after).unwrap();
+    let units: Vec<_> = config
+        .devices
+        .iter()
+        .map(|d| (d.unit, d.device, d.tag.as_str(), d.description.as_str()))
+        .collect();
+    assert_eq!(
+        units,
+        [
+            (7, Device::Ddc100Uec, "MOV-4141", "Inlet"),
+            (3, Device::Ddc100Mx, "80-POS-4142", "Position"),
+            (1, Device::Ddc100Io, "x", ""),
+        ]
+    );
+    let head = "Tag name,Unit,Type\n";
+    let many: String = (1..=250)
+        .map(|n| format!("M-{n},{n},ddc100-mx\n"))
+        .collect();
+    let config = with_tags("many", &format!("{head}{many}"), "").unwrap();
+    assert_eq!(config.devices.len(), 250);
+    let check = |name: &str, csv: &str, line: usize, words: &[&str]| {
+        let text = with_tags(name, &format!("{head}{csv}"), after).unwrap_err();
+        assert!(
+            text.contains(&format!("plant.toml, line {line}: ")),
+            "{text}"
+        );
+        for word in words {
+            assert!(text.contains(word), "{text} lacks {word}");
+        }
+    };
+    check("type", "M-1,4,\n", 7, &["units.csv", "unit 4", "ddc100-mx"]);
+    check(
+        "unit",
+        "M-1,251,ddc100-mx\n",
+        7,
+        &["units.csv", "251", "line 2"],
+    );
+    check("empty", "", 7, &["units.csv"]);
+    check(
+        "unit-twice",
+        "M-1,1,ddc100-mx\n",
+        12,
+        &["unit 1", "already"],
+    );
+    check("tag-twice", "x,4,ddc100-mx\n", 9, &["\"x\" already"]);
+    let missing = with(&format!("{LOOP}\ntags = \"nowhere.csv\""), MX).unwrap_err();
+    assert!(
+        missing.contains("line 7") && missing.contains("nowhere.csv"),
+        "{missing}"
+    );
+    let stray = with(&format!("{RTU}\ntags = \"units.csv\""), ICON).unwrap_err();
+    assert!(
+        stray.contains("line 5") && stray.contains("remove"),
+        "{stray}"
+    );
+}

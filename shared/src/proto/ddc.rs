@@ -107,7 +107,8 @@ pub enum DdcNews {
         fault_a: Option<bool>,
         /// The same on host port 2; null also if there is none.
         fault_b: Option<bool>,
-        /// Request PDU.
+        /// Request PDU of the last good answer; before there was one, that of this poll. It may ask
+        /// for a few registers more than `start` and `count` of the network say.
         request: String,
         /// Response PDU of the last good answer; empty if there never was one.
         response: String,
