@@ -109,12 +109,12 @@ async fn a_break_is_named_where_it_is() {
         "ddc-break",
         "loop",
         6,
-        &["break-3 from 20 to 3600 every 3600"],
+        &["break-3 from 25 to 3600 every 3600"],
     );
     let page = network.open("#/devices").await;
     page.click("[data-testid=nav-network]").await;
     let good = format!("document.querySelector('{FINDING}[data-key=no_fault][data-certain=true]')");
-    until(&page, &good, 15).await;
+    until(&page, &good, 20).await;
     assert_eq!(count(&page, "[data-testid=node]").await, 6);
     assert_eq!(count(&page, "[data-testid=break]").await, 0);
     assert_eq!(count(&page, ".ring .sign-f").await, 0, "grey is normal");
