@@ -1,4 +1,4 @@
-//! HART end to end: pasted frames, as a person sees them.
+//! HART end to end: pasted frames, and the simulated loop, as a person sees them.
 
 use std::time::Duration;
 
@@ -295,4 +295,177 @@ async fn samples_show_what_they_promise() {
     page.wait_for("[data-testid=sample-button]").await;
     assert_eq!(count(&page, "[data-testid=program]").await, 0);
     page.assert_clean().await;
+}
+
+/// The line of the built-in plant, and its devices: an IQ at polling address 0, a CVA at 1.
+const LOOP: &str = "Simulated%20HART%20loop";
+
+/// Opens a tab of a device of the simulated loop.
+async fn open_device(server: &Server, tag: &str, tab: &str) -> Page {
+    let page = Page::open(&server.url(&format!("/#/device/{tag}/{tab}"))).await;
+    page.show(1440, 900, Scheme::Light).await;
+    page.wait_for("[data-testid=program][data-state=open]")
+        .await;
+    page
+}
+
+/// Waits until a value of a device is there, and gives it as it stands.
+async fn value(page: &Page, key: &str) -> String {
+    let css = format!("[data-testid=hart-value][data-key='{key}'] .value-said b");
+    page.text(&css).await
+}
+
+/// A float as the frame that is shown under a value has it, so many bytes behind the status bytes.
+async fn float_of(page: &Page, key: &str, at: usize) -> f32 {
+    page.click(&format!(
+        "[data-testid=hart-value][data-key='{key}'] .value-name"
+    ))
+    .await;
+    let facts = page
+        .text(&format!(
+            "[data-testid=hart-value][data-key='{key}'] [data-testid=value-facts] p.mono"
+        ))
+        .await;
+    let hex = facts.rsplit(": ").next().unwrap_or_default();
+    let bytes: Vec<u8> = hex
+        .split_whitespace()
+        .map(|b| u8::from_str_radix(b, 16).expect("a byte"))
+        .collect();
+    // Delimiter, five bytes of address, command, count, two of status.
+    let from = 10 + at;
+    let word = bytes[from..from + 4].try_into().expect("four bytes");
+    f32::from_be_bytes(word)
+}
+
+/// The overview of a simulated IQ: what it shows is what its frames say.
+#[tokio::test]
+async fn a_device_is_shown_live() {
+    let server = Server::start(&[]);
+    let page = open_device(&server, "FV-401", "overview").await;
+    page.wait_for("[data-testid=hart-position] .unit").await;
+    // Zero is 4 mA and 100 % is 20 mA: the frame's own current, read by hand, is the shown one.
+    let current = value(&page, "3.loop_current").await;
+    let shown: f32 = current.parse().expect("a number");
+    assert!((3.5..=20.5).contains(&shown), "{current}");
+    page.click("[data-testid=hart-read]").await;
+    page.wait_for("[data-testid=hart-value][data-key='133.mode'] .value-said b")
+        .await;
+    let mode = value(&page, "133.mode").await;
+    assert!(mode.contains("Analogue input"), "{mode}");
+    // Demand, position: unit byte 4, float from 5 on; unit 9, float from 10 on.
+    let demand = float_of(&page, "3.pv", 5).await;
+    assert!((0.0..=100.0).contains(&demand), "{demand}");
+    page.wait_for("[data-testid=hart-trend] [data-testid=chart-svg]")
+        .await;
+    until(
+        &page,
+        "[data-testid=hart-ne107]",
+        "!/not read/.test($.textContent)",
+    )
+    .await;
+    look(&page, "overview").await;
+    page.assert_clean().await;
+}
+
+/// Everything of the set-up is read or said to be refused; nothing stays "not read".
+#[tokio::test]
+async fn the_set_up_is_read() {
+    let server = Server::start(&[]);
+    let page = open_device(&server, "FV-401", "setup").await;
+    page.wait_for("[data-testid=hart-unavailable]").await;
+    patient(
+        &page,
+        "[data-testid=hart-setup]",
+        "!/not read/.test($.textContent)",
+    )
+    .await;
+    let zero = value(&page, "131.zero").await;
+    assert!(
+        (float_of(&page, "131.zero", 0).await - zero.parse::<f32>().expect("mA")).abs() < 0.001
+    );
+    let maker = value(&page, "0.manufacturer").await;
+    assert!(maker.contains("Rotork"), "{maker}");
+    look(&page, "setup").await;
+    page.click("[data-testid=hart-tab][data-tab=variables]")
+        .await;
+    page.wait_for("[data-testid=hart-variables] [data-key='3.pv'] b")
+        .await;
+    patient(
+        &page,
+        "[data-testid=hart-variables] [data-key='9.slot[2].status']",
+        "!/not read/.test($.textContent)",
+    )
+    .await;
+    look(&page, "variables").await;
+    page.assert_clean().await;
+}
+
+/// Status by bit, for an IQ and a CVA; the map of the device.
+#[tokio::test]
+async fn status_and_map_are_those_of_the_family() {
+    let server = Server::start(&[]);
+    let page = open_device(&server, "FV-401", "status").await;
+    page.wait_for("[data-testid=hart-bit]").await;
+    // Appendix 1: 39 bits of the IQ; 8 of the device status, 6 extended.
+    assert!(count(&page, "[data-testid=hart-bit]").await >= 39 + 8 + 6);
+    look(&page, "status").await;
+    page.click("[data-testid=hart-tab][data-tab=map]").await;
+    page.wait_for("[data-testid=hart-map]").await;
+    page.wait_for("[data-testid=hart-result]").await;
+    look(&page, "device-map").await;
+    let page = open_device(&server, "FV-402", "status").await;
+    // Table 15: the status word of the CVA, command 129.
+    patient(
+        &page,
+        "[data-testid=hart-status]",
+        "/command 129/.test($.textContent) && /Relay/.test($.textContent)",
+    )
+    .await;
+    page.assert_clean().await;
+}
+
+/// A HART line: its frames are shown by the program, the line says who is on it, and a scan finds
+/// the devices. The list of devices tells their state.
+#[tokio::test]
+async fn a_line_shows_its_frames_and_is_searched() {
+    let server = Server::start(&[]);
+    let page = Page::open(&server.url("/#/devices")).await;
+    page.show(1440, 900, Scheme::Light).await;
+    patient(
+        &page,
+        "[data-testid=device-row][data-tag=FV-401]",
+        "/poll 0/.test($.textContent) && !/never/.test($.textContent)",
+    )
+    .await;
+    look(&page, "devices").await;
+    let page = Page::open(&server.url(&format!("/#/traffic/{LOOP}"))).await;
+    page.show(1440, 900, Scheme::Light).await;
+    page.wait_for("[data-testid=hart-link]").await;
+    page.click("[data-testid=hart-scan]").await;
+    page.wait_for("[data-testid=hart-found]").await;
+    patient(
+        &page,
+        "[data-testid=frame-row]",
+        "/Read unique identifier/.test($.textContent)",
+    )
+    .await;
+    look(&page, "line").await;
+    page.click("[data-testid=hart-bus] [data-testid=hart-cancel]")
+        .await;
+    page.assert_clean().await;
+}
+
+/// As [`until`], for what takes a slow line some time.
+async fn patient(page: &Page, css: &str, test: &str) {
+    let script = format!(
+        "return Boolean((e => e && ({}))(document.querySelector({css:?})))",
+        test.replace('$', "e")
+    );
+    for _ in 0..120 {
+        if page.eval(&script).await == Value::Bool(true) {
+            return;
+        }
+        tokio::time::sleep(Duration::from_millis(250)).await;
+    }
+    panic!("never true of {css}: {test}");
 }
