@@ -68,7 +68,7 @@ fn steps(report: &mut Report) -> Result {
     })?;
     let peers = report.step("peers", |_| peers::ensure())?;
     report.step("tests against peers", |log| {
-        shell::run(&mut native("build", &BINARY_AND_ITS_TESTS))?;
+        shell::run(&mut native("build", BINARY_AND_ITS_TESTS))?;
         log.run_tests("peers", peers.environment(&mut with_binary("peers")))?;
         log.run_tests(
             "hart peers",
@@ -92,7 +92,7 @@ fn native(verb: &str, args: &[&str]) -> Command {
 
 /// Selects the binary together with the tests that start it: without a test among the targets,
 /// cargo would leave out the dev-dependencies, unify other features and compile most of it again.
-const BINARY_AND_ITS_TESTS: [&str; 14] = [
+const BINARY_AND_ITS_TESTS: &[&str] = &[
     "--bin",
     "valvescope",
     "--test",
