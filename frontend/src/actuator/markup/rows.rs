@@ -25,7 +25,7 @@ pub struct Around {
 /// A list of registers.
 pub fn list(html: &mut Markup, dossier: &Dossier, rows: &[&'static Row], around: &Around) {
     let class = if around.settings {
-        "icon-rows settings"
+        "icon-rows icon-settings"
     } else {
         "icon-rows"
     };

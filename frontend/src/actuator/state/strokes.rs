@@ -162,6 +162,12 @@ fn of_file(log: &Log, told: Told, kind: Kind, number: u16) -> Stroke {
     }
 }
 
+/// The part of a stroke that has values: what was not reached takes no room in a picture.
+fn reached(times: &[Option<i64>]) -> &[Option<i64>] {
+    let last = times.iter().rposition(Option::is_some);
+    times.get(..last.map_or(0, |at| at + 1)).unwrap_or(times)
+}
+
 /// Reading E78: what stands in places that were not reached is not stated, 0 is presumed. Zeros at
 /// the end are left out; the first is the start.
 fn unreached(times: &mut [Option<i64>]) {
@@ -235,7 +241,7 @@ pub fn chart(stroke: &Stroke, reference: Option<&Stroke>, limits: &Limits) -> Ch
         label,
         shape: Shape::Line,
         stroke: line,
-        points: points(from, times, Scale::TENTH),
+        points: points(from, reached(times), Scale::TENTH),
     };
     if let Some(reference) = reference {
         series.push(line(
