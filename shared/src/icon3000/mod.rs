@@ -21,6 +21,7 @@ pub mod curve;
 pub mod export;
 pub mod health;
 pub mod identity;
+mod judge;
 pub mod model;
 pub mod plan;
 pub mod read;
