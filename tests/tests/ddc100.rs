@@ -6,10 +6,10 @@ use shared::ddc100::estimate::estimate;
 use shared::ddc100::setup::Member;
 use shared::ddc100::tables::SCAN_TIMES;
 use shared::ddc100::timing::Line;
-use shared::ddc100::{Finding, HostPort, Setup, diagnose};
+use shared::ddc100::{FaultTable, Finding, HostPort, Setup, diagnose};
 use shared::device::Device;
 use shared::frame::Framing;
-use shared::proto::DdcShape;
+use shared::proto::{DdcNews, DdcShape, LineState, Outcome};
 use shared::sim::ddc100::{Trouble, UnitTrouble};
 use tests::ddc100::{Bench, registers, units};
 
@@ -241,4 +241,56 @@ fn units_come_back() {
         bench.pass();
     }
     assert_eq!(bench.table(), [(0, 0); 5]);
+}
+
+/// A page that follows the news has the table and the diagnosis of the host, whatever happens.
+#[test]
+fn the_page_comes_to_the_same_table() {
+    let mut bench = five(DdcShape::Loop, None);
+    let mut page = FaultTable::new(1..=5, true);
+    let troubles = ["off-3", "break-2", "port-1", "break-4", "deaf-5", "short-0"];
+    for (round, name) in troubles.into_iter().cycle().take(60).enumerate() {
+        let trouble: Trouble = name.parse().expect("a name");
+        if !bench.network.heal(trouble) {
+            bench.network.inject(trouble);
+        }
+        if round == 30 {
+            let port = |state| DdcNews::Port {
+                bus: String::new(),
+                port: 2,
+                state,
+                text: String::new(),
+            };
+            for (up, state) in [(false, LineState::Down), (true, LineState::Up)] {
+                bench.poller.set_port(HostPort::Two, up);
+                page.apply(&port(state));
+                assert_eq!(
+                    diagnose(DdcShape::Loop, &page),
+                    diagnose(DdcShape::Loop, bench.poller.faults())
+                );
+            }
+        }
+        for step in 0..40 + round {
+            let before = bench.log.len();
+            bench.step();
+            if let Some((unit, port, _)) = bench.log.get(before).copied() {
+                let faults = bench.poller.faults();
+                let news = DdcNews::Unit {
+                    bus: String::new(),
+                    unit,
+                    port,
+                    outcome: Outcome::Ok,
+                    text: String::new(),
+                    fault_a: faults.fault(unit, HostPort::One),
+                    fault_b: faults.fault(unit, HostPort::Two),
+                    request: String::new(),
+                    response: String::new(),
+                    at_us: None,
+                    took_us: None,
+                };
+                page.apply(&news);
+                assert_eq!(&page, faults, "round {round}, step {step}");
+            }
+        }
+    }
 }

@@ -121,8 +121,8 @@ pub enum Finding {
         /// The port, if the host has or uses just one.
         port: Option<HostPort>,
     },
-    /// The unit comes and goes, and is left out of the rest. Ambiguous.
-    Unsteady(End),
+    /// These units come and go, and are left out of the rest. Ambiguous.
+    Unsteady(Vec<u8>),
     /// The unit answers through one port only, although units beyond it answer through the other:
     /// no state of the cable explains it. Ambiguous.
     OneSided {

@@ -44,10 +44,11 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
     let used = |port| faults.has(port) && faults.is_up(port);
     let mut untried = 0_usize;
     let mut heard = Vec::with_capacity(faults.len());
+    let mut unsteady = Vec::new();
     for (place, (unit, pair)) in faults.units().enumerate() {
         let end = End::Unit { place, unit };
         if faults.is_unsteady(unit) {
-            findings.push(Finding::Unsteady(end));
+            unsteady.push(unit);
             continue;
         }
         let state = |port| {
@@ -69,6 +70,9 @@ pub fn diagnose(shape: DdcShape, faults: &FaultTable) -> Diagnosis {
                 two: !two,
             });
         }
+    }
+    if !unsteady.is_empty() {
+        findings.push(Finding::Unsteady(unsteady));
     }
     for port in HostPort::BOTH {
         if faults.has(port) && !faults.is_up(port) {

@@ -185,7 +185,7 @@ fn one_port() {
 fn not_tried_yet() {
     check(Loop, "-- -- --", &["6 polls are still to be made"]);
     check(Loop, "0- 0- 1-", &["3 polls"]);
-    check(SingleEnded, "0- -- 0-", &["1 polls"]);
+    check(SingleEnded, "0- -- 0-", &["one poll is still"]);
     let found = diagnose(Loop, &table(Loop, "00 11 0-"));
     assert!(found.unsettled > 0 && !found.findings.iter().any(|f| found.is_certain(f)));
 }
@@ -376,6 +376,13 @@ fn an_unsteady_unit_is_left_out() {
     let found = found.unwrap();
     let keys: Vec<_> = found.findings.iter().map(Finding::key).collect();
     assert_eq!(keys, ["unsteady", "off_line"]);
+    assert!(
+        found.findings[0]
+            .to_string()
+            .starts_with("Unit 2 comes and goes")
+    );
+    let two = Finding::Unsteady(vec![2, 4]).to_string();
+    assert!(two.starts_with("Units 2 and 4 come and go") && two.contains("They are"));
     assert_eq!(found.unsettled, 0);
     assert!(found.is_certain(&found.findings[1]) && !found.is_certain(&found.findings[0]));
     // Going off once, and coming back, is no such thing.
@@ -387,11 +394,10 @@ fn an_unsteady_unit_is_left_out() {
     }
     assert!(!table.is_unsteady(2));
     // And it is forgotten.
-    for round in 0..40 {
+    for _ in 0..40 {
         for port in HostPort::BOTH {
             pass(1, port, &[]);
         }
-        let _ = round;
     }
     let calm = pass(1, HostPort::One, &[]);
     assert_eq!(calm.findings, [Finding::NoFault]);

@@ -65,6 +65,7 @@ impl fmt::Display for Finding {
                 f,
                 "The host lost {port}: see to its cable, its converter or its settings. Nothing is known of the cable there."
             ),
+            Self::Untried(1) => f.write_str("Not known yet: one poll is still to be made."),
             Self::Untried(count) => write!(f, "Not known yet: {count} polls are still to be made."),
             Self::OffLine(end) => write!(
                 f,
@@ -117,11 +118,20 @@ impl fmt::Display for Finding {
                 }
                 f.write_str(".")
             }
-            Self::Unsteady(unit) => write!(
-                f,
-                "{} comes and goes: its answers began and ended several times in the last passes. It is left out of what is said of the cable.",
-                Capital(unit)
-            ),
+            Self::Unsteady(list) => {
+                let (are, they) = match list.len() {
+                    1 => ("comes and goes", "It is"),
+                    _ => ("come and go", "They are"),
+                };
+                let mut text = units(list);
+                if let Some(first) = text.get_mut(..1) {
+                    first.make_ascii_uppercase();
+                }
+                write!(
+                    f,
+                    "{text} {are}: answers began and ended several times in the last passes. {they} left out of what is said of the cable."
+                )
+            }
             Self::OneSided { unit, port } => write!(
                 f,
                 "{} does not answer through {port}, but units beyond it do.",
