@@ -46,7 +46,7 @@ async fn a_page_that_follows_a_network_is_told_all_of_it() {
         "Simulated DDC-100 loop, port 1",
         "Simulated DDC-100 loop, port 2",
     ];
-    assert!(names.ends_with(&ports), "{names:?}");
+    assert!(names.windows(3).any(|three| three == ports), "{names:?}");
     let own: Vec<_> = devices.iter().filter(|d| d.bus == LOOP).collect();
     assert_eq!(own.len(), 12);
     page.say(&follow(LOOP)).await;
