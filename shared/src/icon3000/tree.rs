@@ -73,6 +73,11 @@ pub(crate) fn records(
         out.problem(Problem::new(Finding::NotInMap, place));
         at = at.saturating_add(1);
     }
+    // Half a record.
+    let (_, place) = data.take_rest();
+    if place.len > 0 {
+        out.push(Some(whole), Name::Def(&defs::UNKNOWN), Value::Raw, place);
+    }
     true
 }
 

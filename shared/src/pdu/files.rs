@@ -81,16 +81,10 @@ impl<'a> Pdu<'a, '_> {
             let want = bytes(usize::from(count).saturating_mul(2));
             self.find(Finding::NotAsAsked { got, want }, group.here());
         }
-        if let (Device::Icon3000v2, Some(file), Some(start)) = (self.device, file, start) {
-            let known = crate::icon3000::tree::records(self.out, id, file, start, group);
-            if known {
-                let (_, place) = group.take_rest();
-                if place.len > 0 {
-                    self.out
-                        .push(Some(id), Name::Def(&defs::UNKNOWN), Value::Raw, place);
-                }
-                return;
-            }
+        if let (Device::Icon3000v2, Some(file), Some(start)) = (self.device, file, start)
+            && crate::icon3000::tree::records(self.out, id, file, start, group)
+        {
+            return;
         }
         self.records(id, start, group);
     }
