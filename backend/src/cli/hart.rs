@@ -54,7 +54,7 @@ struct LineArgs {
     /// Tries beyond the first.
     #[arg(long, value_parser = clap::value_parser!(u8).range(0..=10))]
     retries: Option<u8>,
-    /// Longest silence within a frame, in milliseconds, as the port delivers it (usually 25).
+    /// Longest silence within a frame, in milliseconds, as the port delivers it (usually 100).
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=500))]
     gap_ms: Option<u64>,
     /// Which family it is, so that its own status is decoded.

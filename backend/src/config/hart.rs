@@ -5,7 +5,9 @@ use super::{BusConfig, Config, DeviceConfig, LineConfig, raw};
 use shared::device::{Device, Family};
 use shared::frame::Framing;
 use shared::hart::frame::PREAMBLE;
-use shared::hart::link::{BATCHED_GAP, BAUD, LAST_POLLING, RETRIES, Setup, Target, Timing};
+use shared::hart::link::{
+    BATCHED_GAP, BAUD, LAST_POLLING, PATIENT_GAP, RETRIES, Setup, Target, Timing,
+};
 use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
@@ -95,15 +97,19 @@ impl HartConfig {
         let gap = self
             .gap
             .map(|gap| gap.as_micros().try_into().unwrap_or(u64::MAX));
-        let (baud, gap) = match &self.way {
-            HartWay::Serial { baud, .. } => (*baud, gap.or(Some(BATCHED_GAP))),
-            // The simulated line is heard by the timers of this program.
-            HartWay::Ip { .. } | HartWay::Simulated => (BAUD, gap.or(Some(BATCHED_GAP))),
+        let baud = match &self.way {
+            HartWay::Serial { baud, .. } => *baud,
+            HartWay::Ip { .. } | HartWay::Simulated => BAUD,
+        };
+        // All of these ports are heard through an operating system.
+        let timing = match gap {
+            Some(gap) => Timing::new(baud, Some(gap)),
+            None => Timing::new(baud, Some(BATCHED_GAP)).patient(PATIENT_GAP),
         };
         Setup {
             primary: self.primary,
             retries,
-            timing: Timing::new(baud, gap),
+            timing,
         }
     }
 

@@ -344,3 +344,163 @@ pub fn usual_data(number: u16) -> Option<Vec<u8>> {
 pub fn reads(number: u16, data: &[u8]) -> bool {
     command(number).is_some_and(|c| c.reads_with(data.len()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hart::frame::seal;
+
+    fn answer(address: &[u8], command: u8, data: &[u8]) -> Answer {
+        let delimiter = if address.len() == 5 { 0x86 } else { 0x06 };
+        let data = [&[0, 0], data].concat();
+        Answer::of(&seal(delimiter, address, command, &data)).unwrap()
+    }
+
+    /// Source: readings/hart.md, 3.1: HART 5 answers 12 bytes, HART 6 17, HART 7 22.
+    fn identity(revision: u8) -> Vec<u8> {
+        let mut data = vec![254, 0x6E, 0xDD, 7, revision, 2, 1, 8, 0, 1, 0x23, 0x45];
+        match revision {
+            6 => data.extend([5, 5, 0, 7, 0]),
+            7 => data.extend([5, 4, 0, 7, 0, 0, 0x6E, 0, 0x6E, 1]),
+            _ => {}
+        }
+        data
+    }
+
+    #[test]
+    fn a_device_of_every_revision_is_found_once_and_asked_by_its_long_address() {
+        for revision in 5..=7 {
+            let mut device = Device::new(Target::Polling(3));
+            let Step::Find(request) = device.request(3, &[]) else {
+                panic!("it is not known yet");
+            };
+            assert_eq!(request.frame(true), [0x02, 0x83, 0, 0, 0x81]);
+            assert_eq!(request.preambles, 20);
+            assert!(device.found(&answer(&[0x83], 0, &identity(revision))));
+            let found = device.identity().unwrap();
+            assert_eq!((found.revision, found.expanded_type), (revision, 0x6EDD));
+            let Step::Ask(request) = device.request(3, &[]) else {
+                panic!("it is known");
+            };
+            // Six bits of the type: 6E becomes 2E, with the master bit AE.
+            let frame = [0x82, 0xAE, 0xDD, 1, 0x23, 0x45, 3, 0, 0x95];
+            assert_eq!(
+                (request.frame(true), request.preambles),
+                (frame.to_vec(), 7)
+            );
+            device.forget();
+            assert!(matches!(device.request(3, &[]), Step::Find(_)));
+        }
+    }
+
+    #[test]
+    fn whoever_is_older_than_hart_5_keeps_its_short_address() {
+        let mut data = identity(5);
+        data[0] = 0x0B;
+        let found = Identity::of(&answer(&[0x02], 0, &data)).unwrap();
+        assert_eq!(found.address, Address::Short(2));
+        assert_eq!(found.request(3, &[]).frame(false)[..2], [0x02, 0x02]);
+        assert_eq!(Identity::of(&answer(&[0x02], 0, &data[..11])), None);
+    }
+
+    #[test]
+    fn targets_are_what_people_write() {
+        for text in ["AEDD012345", "2edd012345", "EEDD012345"] {
+            assert_eq!(
+                Target::unique(text),
+                Some(Target::Unique(0x2EDD, 0x01_2345))
+            );
+        }
+        for bad in [
+            "",
+            "AEDD01234",
+            "AEDD0123456",
+            "+EDD012345",
+            "0000000000",
+            "80000000 0",
+        ] {
+            assert_eq!(Target::unique(bad), None, "{bad}");
+        }
+        // Readings, section 4.1: VALVE-01.
+        let packed = [0x58, 0x13, 0x16, 0x16, 0xDC, 0x31];
+        assert_eq!(Target::tag("valve-01"), Some(Target::Tag(packed)));
+        let request = Target::tag("VALVE-01").unwrap().identify();
+        assert_eq!(request.frame(true)[..8], [0x82, 0x80, 0, 0, 0, 0, 11, 6]);
+        for bad in ["", "NINE SIGN", "Ä", "a\u{7f}"] {
+            assert_eq!(Target::tag(bad), None, "{bad}");
+        }
+        let request = Target::long_tag("Kühlung").unwrap().identify();
+        assert_eq!((request.command, request.data.len()), (21, 32));
+        assert_eq!(request.data[..8], *b"K\xFChlung\0");
+        assert_eq!(Target::long_tag(&"x".repeat(33)), None);
+        assert_eq!(Target::long_tag("€"), None);
+    }
+
+    /// Another device at the address that was meant is not taken for it.
+    #[test]
+    fn a_unique_address_is_looked_at() {
+        let mut device = Device::new(Target::unique("AEDD012346").unwrap());
+        let own = [0xAE, 0xDD, 1, 0x23, 0x46];
+        assert!(!device.found(&answer(&own, 0, &identity(7))));
+        let mut data = identity(7);
+        data[11] = 0x46;
+        assert!(device.found(&answer(&own, 0, &data)));
+    }
+
+    /// A device of HART 5 that looks at four bits of the address answers at 3, 19, 35 and 51.
+    #[test]
+    fn a_scan_counts_a_device_once() {
+        let mut scan = Scan::new(0, 200);
+        let (mut devices, mut again) = (0, Vec::new());
+        while let Some((polling, request)) = scan.next() {
+            assert_eq!(request.address, Address::Short(polling));
+            let hears = polling & 15 == 3;
+            let reply = hears.then(|| answer(&[0x80 | polling], 0, &identity(5)));
+            match scan.take(reply.as_ref()) {
+                Sighting::Device(_) => devices += 1,
+                Sighting::Again(before) => again.push((polling, before)),
+                Sighting::Nobody => {}
+                Sighting::Unknown => panic!("{polling}"),
+            }
+        }
+        assert_eq!((devices, again), (1, vec![(19, 3), (35, 3), (51, 3)]));
+        assert_eq!((scan.progress(), scan.silent()), ((64, 64), 60));
+        // Two devices at addresses of their own are two.
+        let mut scan = Scan::new(0, 1);
+        assert!(matches!(
+            scan.take(Some(&answer(&[0x80], 0, &identity(7)))),
+            Sighting::Device(_)
+        ));
+        assert!(matches!(
+            scan.take(Some(&answer(&[0x81], 0, &[1, 2]))),
+            Sighting::Unknown
+        ));
+        assert_eq!(scan.next(), None);
+        assert_eq!(Scan::new(5, 4).next(), None);
+    }
+
+    /// What is read together reads only, by the manual's own tables.
+    #[test]
+    fn an_overview_only_reads() {
+        use crate::device::Family;
+        for family in [None, Some(Family::Cva), Some(Family::Iq), Some(Family::Si)] {
+            let all = overview(family);
+            assert!(all.len() > 10 && all.iter().all(|(n, d)| reads(*n, d)));
+            assert!(all.contains(&(3, Vec::new())) && all.contains(&(48, Vec::new())));
+            assert_eq!(all.contains(&(523, vec![0, 64])), family.is_some());
+            assert_eq!(
+                all.iter().any(|(n, _)| *n == 129),
+                family == Some(Family::Cva)
+            );
+        }
+        for (number, data) in [
+            (48, vec![0]),
+            (35, vec![0; 9]),
+            (132, vec![1]),
+            (130, vec![]),
+            (9999, vec![]),
+        ] {
+            assert!(!reads(number, &data), "{number}");
+        }
+    }
+}

@@ -65,7 +65,7 @@ use ear::Ear;
 pub use event::{Event, Stats};
 pub use request::{Answer, Done, Failure, Request};
 use std::collections::VecDeque;
-pub use timing::{BATCHED_GAP, BAUD, Timing};
+pub use timing::{BATCHED_GAP, BAUD, PATIENT_GAP, Timing};
 
 /// Tries beyond the first, as most masters have it (readings: FieldComm's server, EL6184).
 pub const RETRIES: u8 = 3;

@@ -10,6 +10,9 @@ pub const BAUD: u32 = 1200;
 /// (reading G18: 20 to 100 ms).
 pub const BATCHED_GAP: u64 = 25_000;
 
+/// Silence that a busy computer may make within a frame without breaking it off.
+pub const PATIENT_GAP: u64 = 100_000;
+
 /// Times of a link in microseconds. At 1200 bit/s and without batches they are those of the table;
 /// another rate scales them, and a port that delivers late makes those longer that would otherwise
 /// end before it can have delivered.
@@ -68,6 +71,14 @@ impl Timing {
             gap,
             lag,
         }
+    }
+
+    /// The same, with a longer silence until a frame counts as broken off. Whose turn it is does not
+    /// change: bytes are late only now and then.
+    #[must_use]
+    pub fn patient(mut self, gap: u64) -> Self {
+        self.gap = self.gap.max(gap);
+        self
     }
 
     /// RT1 of a master.
@@ -132,6 +143,10 @@ mod tests {
         assert!(slow.quiet_primary >= slow.slave_time_out + slow.character + slow.lag);
         assert!(slow.link_grant > slow.hold + slow.lag);
         assert_eq!(slow.quiet_secondary, slow.quiet_primary + slow.link_grant);
+        // Patience changes nothing else.
+        let patient = late.patient(PATIENT_GAP);
+        assert_eq!((patient.gap, patient.lag), (100_000, late.lag));
+        assert_eq!(patient.link_grant, plain.link_grant);
         // A gap below that of the standard is none.
         assert_eq!(Timing::new(BAUD, Some(1)), plain);
     }
