@@ -1,4 +1,5 @@
-//! Promises that hold for any records, any registers and any file of a snapshot.
+//! Promises that hold for any records, any registers and any file of a snapshot. `PROPTEST_CASES`
+//! says how many of each are tried.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -77,8 +78,6 @@ fn ask(number: u16, records: &Records) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
-
     /// The leaves of any response tile its frame, whatever the request asked for.
     #[test]
     fn any_response_decodes(
