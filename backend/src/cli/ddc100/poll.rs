@@ -11,6 +11,7 @@ use shared::ddc100::diagnosis::diagnose;
 use shared::ddc100::scaling::Scaling;
 use shared::ddc100::view::View;
 use shared::ddc100::{FaultTable, HostPort};
+use shared::device::Device;
 use shared::image::Image;
 use shared::proto::{DdcNews, DdcShape, Outcome};
 use shared::text::read_hex;
@@ -202,9 +203,13 @@ impl State {
             let (position, state) = match &view {
                 Some(view) if unit.is_some_and(|u| u.took_us.is_some()) => {
                     let position = view.position.map(|p| p.to_string());
+                    // An I/O module has no selector.
+                    let valve = device.device != Device::Ddc100Io;
+                    let mode = valve.then(|| view.mode.label());
                     let faults = view.faults.iter().map(|bit| bit.member.label);
-                    let words: Vec<&str> = [view.state.as_str(), view.mode.label()]
+                    let words: Vec<&str> = [Some(view.state.as_str()), mode]
                         .into_iter()
+                        .flatten()
                         .chain(faults)
                         .collect();
                     (position.unwrap_or_default(), words.join(", "))
