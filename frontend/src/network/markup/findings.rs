@@ -44,9 +44,14 @@ pub fn findings(html: &mut Markup, diagnosis: &Diagnosis) {
     html.close("ul");
     let caution = diagnosis.caution();
     if !caution.is_empty() {
+        // It counts down with every poll: to be seen, not to be read out each time.
         html.open(
             "p",
-            &[("class", "quiet net-small"), ("data-testid", "caution")],
+            &[
+                ("class", "quiet net-small"),
+                ("data-testid", "caution"),
+                ("aria-live", "off"),
+            ],
         );
         html.text(&caution).close("p");
     }

@@ -53,7 +53,10 @@ pub fn head(
         html.text(" ");
     }
     html.text(&judged.view.state);
-    html.text(" · ").text(judged.view.mode.label());
+    // An I/O module has no selector; its register 12 holds inputs of the user.
+    if unit.device != Device::Ddc100Io {
+        html.text(" · ").text(judged.view.mode.label());
+    }
     html.close("p");
     let reach = unit.reach(net.ports.len());
     html.open("p", &[("data-testid", "unit-reach")]);
