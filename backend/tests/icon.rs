@@ -299,7 +299,7 @@ async fn a_snapshot_takes_little_more_than_the_wire() {
         );
         assert!((1.0..=1.1).contains(&ratio), "{ratio}");
         assert!(snapshot.failures.is_empty(), "{:?}", snapshot.failures);
-        assert_eq!(snapshot.identity.is_some(), true);
+        assert!(snapshot.identity.is_some());
         assert_eq!(snapshot.files.is_empty(), model == Model::Icon3000);
         // What is written is read back the same, and the same is no change.
         let (back, problems) = parse(snapshot.to_text().as_bytes());

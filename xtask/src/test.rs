@@ -68,14 +68,12 @@ fn steps(report: &mut Report) -> Result {
     })?;
     let peers = report.step("peers", |_| peers::ensure())?;
     report.step("tests against peers", |log| {
-        shell::run(&mut native("build", BINARY_AND_ITS_TESTS))?;
-        log.run_tests("peers", peers.environment(&mut with_binary("peers")))?;
-        log.run_tests(
-            "hart peers",
-            peers.environment(&mut with_binary("hart_peers")),
-        )
+        shell::run(&mut native("build", &binary_and_its_tests()))?;
+        PEERS
+            .iter()
+            .try_for_each(|test| log.run_tests(test, peers.environment(&mut with_binary(test))))
     })?;
-    for test in ["e2e", "e2e_ddc", "e2e_dop", "e2e_hart"] {
+    for test in END_TO_END {
         report.step("end to end", |log| {
             log.run_tests(test, browser.environment(&mut with_binary(test)))
         })?;
@@ -90,26 +88,20 @@ fn native(verb: &str, args: &[&str]) -> Command {
     command
 }
 
+/// Tests against other implementations.
+const PEERS: [&str; 2] = ["peers", "hart_peers"];
+
+/// Tests of the binary with a browser.
+const END_TO_END: [&str; 4] = ["e2e", "e2e_ddc", "e2e_dop", "e2e_hart"];
+
 /// Selects the binary together with the tests that start it: without a test among the targets,
 /// cargo would leave out the dev-dependencies, unify other features and compile most of it again.
-const BINARY_AND_ITS_TESTS: &[&str] = &[
-    "--bin",
-    "valvescope",
-    "--test",
-    "peers",
-    "--test",
-    "hart_peers",
-    "--test",
-    "e2e",
-    "--test",
-    "e2e_ddc",
-    "--test",
-    "e2e_dop",
-    "--test",
-    "e2e_hart",
-    "--features",
-    BINARY_FEATURES,
-];
+fn binary_and_its_tests() -> Vec<&'static str> {
+    let mut args = vec!["--bin", "valvescope", "--features", BINARY_FEATURES];
+    let tests = PEERS.iter().chain(&END_TO_END);
+    args.extend(tests.flat_map(|test| ["--test", test]));
+    args
+}
 
 /// The features of those tests; the same for both, so that the helpers compile once.
 const BINARY_FEATURES: &str = "tests/peers,tests/browser";
