@@ -30,11 +30,11 @@ fn simulate(choice: u8, step: u8, stream: &[u8]) {
     }
     // A request that is sound, whatever came before: it is answered.
     line.set_echo(false);
-    at += 60_000_000;
+    at += 3_000_000;
     heard.extend(line.advance(Micros::new(at)));
     if choice & 0x80 == 0 {
         line.devices_mut()[0].power_cycle();
-        at += 60_000_000;
+        at += 3_000_000;
         let _ = line.advance(Micros::new(at));
         let mut ask = vec![0xFF; 5];
         ask.extend([0x82, 0xAE, 0xDD, 0x01, 0x23, 0x45, 0x07, 0x00, 0x91]);
