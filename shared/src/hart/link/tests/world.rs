@@ -236,8 +236,12 @@ impl World {
                     self.links[at].heard(&[byte], now);
                 }
             }
-            for (at, device) in self.devices.iter_mut().enumerate() {
-                if by != By::Device(at) {
+            // Half duplex: whoever sends hears nothing.
+            let sends: Vec<bool> = (0..self.devices.len())
+                .map(|at| self.is_sending(By::Device(at)))
+                .collect();
+            for (device, sends) in self.devices.iter_mut().zip(sends) {
+                if !sends {
                     device.hear(byte, now.get(), character);
                 }
             }
