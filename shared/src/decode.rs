@@ -21,6 +21,9 @@ pub struct Context {
     pub device: Device,
 }
 
+/// False in a program that shows no registers: it decodes no Modbus.
+const MODBUS: bool = cfg!(feature = "maps");
+
 /// Decodes one entry of the index: `bytes` are its bytes, `request` those of the request that it
 /// answers. Never fails: what can't be understood becomes raw fields and problems.
 #[must_use]
@@ -52,9 +55,13 @@ pub fn decode_into(
         return;
     }
     match context.framing {
-        Framing::Rtu => rtu(frame, bytes, request, context, out),
-        Framing::Ascii => ascii(frame, bytes, request, context, out),
-        Framing::Tcp => tcp(frame, bytes, request, context, out),
+        Framing::Rtu if MODBUS => rtu(frame, bytes, request, context, out),
+        Framing::Ascii if MODBUS => ascii(frame, bytes, request, context, out),
+        Framing::Tcp if MODBUS => tcp(frame, bytes, request, context, out),
+        Framing::Rtu | Framing::Ascii | Framing::Tcp => {
+            let place = Place::new(0, bytes.len());
+            out.push(None, Name::Def(&defs::UNKNOWN), Value::Raw, place);
+        }
         #[cfg(feature = "hart")]
         Framing::Hart => {
             crate::hart::decode::frame(frame.marks, bytes, request, context.device, out);

@@ -26,6 +26,9 @@ pub struct Guess {
 /// Looks for an identification (FC 17), then for addresses that only one family of devices has.
 #[must_use]
 pub fn device(session: &Session) -> Guess {
+    if !cfg!(feature = "maps") {
+        return Guess::default();
+    }
     let mut seen: Option<Guess> = None;
     for index in 0..session.len().min(SAMPLE) {
         let Some(frame) = session.frame(index) else {

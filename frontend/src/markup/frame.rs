@@ -200,6 +200,9 @@ fn about(shown: &Shown) -> (&'static str, String) {
         use crate::hart::state::summary::{title, who};
         return (title(&shown.decoded), who(&shown.decoded));
     }
+    if !cfg!(feature = "maps") {
+        return ("Frame", String::new());
+    }
     let frame = shown.frame;
     let who = format!("unit {} · function {:02X}", frame.unit, frame.function);
     (function(&frame), who)

@@ -45,6 +45,9 @@ pub fn summary(
     if !Framing::MODBUS.contains(&context.framing) {
         return Some(crate::hart::state::summary::of(frame, scratch));
     }
+    if !cfg!(feature = "maps") {
+        return None;
+    }
     let worst = scratch.problems().iter().map(Problem::severity).max();
     let (unit, code) = if frame.is_noise() {
         Default::default()

@@ -23,6 +23,9 @@ use crate::transaction::Pairing;
 /// frame, and one behind it that shows whether the first ended where it should.
 pub const LOOKAHEAD: usize = 1200;
 
+/// False in a program that shows no registers: all bytes of Modbus are noise to it.
+const MODBUS: bool = cfg!(feature = "maps");
+
 /// How frames are marked off on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Framing {
@@ -326,9 +329,10 @@ impl Scanner {
             barren: self.barren,
         };
         let (found, barren) = match self.framing {
-            Framing::Rtu => rtu::next(&view, &self.pairing),
-            Framing::Ascii => (ascii::next(&view, &self.pairing), 0),
-            Framing::Tcp => (tcp::next(&view, &self.pairing), 0),
+            Framing::Rtu if MODBUS => rtu::next(&view, &self.pairing),
+            Framing::Ascii if MODBUS => (ascii::next(&view, &self.pairing), 0),
+            Framing::Tcp if MODBUS => (tcp::next(&view, &self.pairing), 0),
+            Framing::Rtu | Framing::Ascii | Framing::Tcp => (Found::noise(bytes.len()), 0),
             #[cfg(feature = "hart")]
             Framing::Hart => crate::hart::stream::next(&view),
             #[cfg(feature = "hart")]
