@@ -4,13 +4,12 @@ use shared::address::{Address, Table};
 use shared::map::row::{Access, Kind, Row};
 use shared::value::{Quality, Value};
 
-use super::rows::{Around, list};
+use super::rows::{Around, cell, list};
 use super::{heading, rows};
 use crate::actuator::state::dossier::Dossier;
 use crate::format::count;
 use crate::markup::Markup;
 use crate::markup::control::{Choice, tick};
-use crate::state::values::{Item, cell};
 
 /// The user level logged in.
 const LEVEL: u16 = 3480;
@@ -54,7 +53,7 @@ pub fn groups(rows: &[&'static Row]) -> Vec<(&'static str, Vec<&'static Row>)> {
 /// True if something speaks against the value of a row.
 #[must_use]
 pub fn is_marked(dossier: &Dossier, row: &'static Row) -> bool {
-    let cell = cell(Item::Row(row), &dossier.image);
+    let cell = cell(dossier, row);
     cell.is_some_and(|c| matches!(c.quality, Quality::OutOfRange | Quality::Invalid))
 }
 
@@ -113,7 +112,7 @@ pub fn logged_in(html: &mut Markup, dossier: &Dossier) {
         .filter(|row| row.access != Access::Absent);
     match row {
         Some(row) => {
-            let cell = cell(Item::Row(row), &dossier.image);
+            let cell = cell(dossier, row);
             rows::value(html, row, cell.as_ref());
             let words = match dossier.image.row(row).map(|seen| seen.judged.value) {
                 Some(Value::Code { raw: 0, .. }) => {

@@ -1,7 +1,8 @@
 //! Registers as lines: name, value with unit and quality, and on demand everything about them.
 
+use shared::icon3000::say::bytes_of;
 use shared::map::row::{Access, DeviceMap, Kind, Level, Row, Trust};
-use shared::value::Quality;
+use shared::value::{Quality, Value};
 
 use super::reading;
 use crate::actuator::state::dossier::Dossier;
@@ -9,7 +10,50 @@ use crate::components::icon::Glyph;
 use crate::format::age;
 use crate::markup::Markup;
 use crate::markup::facts::{fact, reading as reading_fact, trust};
-use crate::state::values::{Cell, Item, access, addresses, cell};
+use crate::state::values::{access, addresses};
+
+/// A value as it is shown. By its own words: to decode the answer that brought it, as the first
+/// program does, would bring the decoders of all protocols along.
+#[derive(Clone, Debug)]
+pub struct Cell {
+    /// Without unit.
+    pub text: String,
+    /// Empty if there is none.
+    pub unit: &'static str,
+    /// True if nothing is set, or if it is not available.
+    pub faint: bool,
+    /// How far to rely on it.
+    pub quality: Quality,
+    /// When its oldest word was read, in microseconds.
+    pub at: u64,
+    /// Its words.
+    pub words: Vec<u16>,
+}
+
+/// The value of a row as last read; `None` if it never was.
+#[must_use]
+pub fn cell(dossier: &Dossier, row: &'static Row) -> Option<Cell> {
+    let seen = dossier.image.row(row)?;
+    let bytes = dossier.image.bytes(row)?;
+    let value = seen.judged.value;
+    let numeric = matches!(value, Value::Number { .. });
+    Some(Cell {
+        text: if numeric {
+            value.to_string()
+        } else {
+            bytes_of(row, &bytes)
+        },
+        unit: if numeric { row.unit } else { "" },
+        faint: matches!(value, Value::Unavailable(_) | Value::Flags { raw: 0, .. }),
+        quality: seen.judged.quality,
+        at: seen.at.get(),
+        words: bytes
+            .chunks_exact(2)
+            .filter_map(|pair| pair.first_chunk::<2>())
+            .map(|pair| u16::from_be_bytes(*pair))
+            .collect(),
+    })
+}
 
 /// What a list of lines needs besides the device.
 #[derive(Clone, Debug, Default)]
@@ -38,7 +82,7 @@ pub fn list(html: &mut Markup, dossier: &Dossier, rows: &[&'static Row], around:
 
 /// One register.
 fn line(html: &mut Markup, dossier: &Dossier, row: &'static Row, around: &Around) {
-    let cell = cell(Item::Row(row), &dossier.image);
+    let cell = cell(dossier, row);
     let open = around.opened.contains(&row.key);
     let (address, _) = addresses(row);
     let quality = cell.as_ref().map_or("not read", |c| c.quality.label());
