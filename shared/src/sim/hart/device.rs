@@ -114,7 +114,7 @@ impl HartDevice {
                 descriptor: packed("", 16),
                 date: [1, 7, 124],
                 assembly: 0,
-                long_tag: latin(tag, b' '),
+                long_tag: latin(tag, 0),
                 serial: 0,
             },
             polling: setup.polling & 0x3F,
