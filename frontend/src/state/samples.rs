@@ -31,48 +31,62 @@ macro_rules! hart {
     };
 }
 
+/// A sample of Modbus, which a program without maps does not carry.
+#[cfg(feature = "maps")]
+macro_rules! modbus {
+    ($name:literal) => {
+        include_bytes!(concat!("../../../static/samples/", $name))
+    };
+}
+#[cfg(not(feature = "maps"))]
+macro_rules! modbus {
+    ($name:literal) => {
+        b""
+    };
+}
+
 /// All samples.
 pub const SAMPLES: [Sample; 10] = [
     Sample {
         key: "icon3000-poll",
         title: "ICON3000 poll",
         about: "Status, identity, log and torque curve of an actuator, over four tables",
-        content: include_bytes!("../../../static/samples/icon3000-poll.hex"),
+        content: modbus!("icon3000-poll.hex"),
         device: None,
     },
     Sample {
         key: "damaged",
         title: "Damaged capture",
         about: "Noise, a flipped bit, swapped CRC bytes, an answer cut short",
-        content: include_bytes!("../../../static/samples/damaged.hex"),
+        content: modbus!("damaged.hex"),
         device: None,
     },
     Sample {
         key: "icon3000-manual",
         title: "ICON3000 manual",
         about: "The worked frames of VCIOM-16345-EN, tables 7 to 29",
-        content: include_bytes!("../../../static/samples/icon3000-manual.hex"),
+        content: modbus!("icon3000-manual.hex"),
         device: Some(Device::Icon3000v2),
     },
     Sample {
         key: "modbus-ascii",
         title: "Modbus ASCII",
         about: "Lines with a colon, one with a wrong LRC",
-        content: include_bytes!("../../../static/samples/modbus-ascii.txt"),
+        content: modbus!("modbus-ascii.txt"),
         device: None,
     },
     Sample {
         key: "modbus-tcp",
         title: "Modbus TCP",
         about: "Two requests under way at once, an exception",
-        content: include_bytes!("../../../static/samples/modbus-tcp.hex"),
+        content: modbus!("modbus-tcp.hex"),
         device: None,
     },
     Sample {
         key: "array",
         title: "C array",
         about: "Bytes as a program has them",
-        content: include_bytes!("../../../static/samples/array.c"),
+        content: modbus!("array.c"),
         device: None,
     },
     Sample {
@@ -100,7 +114,7 @@ pub const SAMPLES: [Sample; 10] = [
         key: "ddc100",
         title: "DDC-100 poll",
         about: "The printed example of LMAIM4019-00, section 3.2",
-        content: include_bytes!("../../../static/samples/ddc100.hex"),
+        content: modbus!("ddc100.hex"),
         device: Some(Device::Ddc100Uec),
     },
 ];
