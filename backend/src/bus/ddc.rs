@@ -328,7 +328,7 @@ impl Actor {
             at,
         );
         let read = self.shape(at).await;
-        let result = self.exchange(poll.port, at, read).await;
+        let result = self.exchange(poll.port, at, &read.into()).await;
         let (outcome, text) = match &result {
             Ok(answer) => match answer.pdu.as_slice() {
                 [function, code] if *function >= 0x80 => {

@@ -5,6 +5,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use leptos::prelude::*;
+use shared::ddc100::counters;
 use shared::ddc100::tags::TagList;
 use shared::proto::{Block, DdcAsk, DdcNews, DeviceInfo, ToPage};
 
@@ -239,6 +240,22 @@ impl Store {
             unit,
             block,
         });
+    }
+
+    /// Reads the counters of a unit once.
+    pub fn read_counters(self, unit: u8) {
+        let bus = self.bus.get_untracked();
+        self.net.update(|net| net.ask_counters(unit));
+        for sub_function in counters::READS {
+            let id = self.next.get_value();
+            self.next.set_value(id.wrapping_add(1));
+            self.send(&DdcAsk::Counter {
+                id,
+                bus: bus.clone(),
+                unit,
+                sub_function,
+            });
+        }
     }
 
     /// Changes what the browser knows of the units, and keeps it.

@@ -35,6 +35,18 @@ pub enum DdcAsk {
         /// What to read.
         block: super::Block,
     },
+    /// Read a counter or the diagnostic register of a unit once (FC 08), between two polls. Only
+    /// sub-functions that read are allowed. The answer is [`DdcNews::Read`].
+    Counter {
+        /// Chosen by the page, repeated in what comes of it.
+        id: u32,
+        /// Name of the bus.
+        bus: String,
+        /// The unit.
+        unit: u8,
+        /// The sub-function.
+        sub_function: u16,
+    },
 }
 
 /// How the cable runs.
@@ -150,7 +162,7 @@ pub enum DdcNews {
         /// What happened, and what to do.
         text: String,
     },
-    /// A `read` is over.
+    /// A `read` or a `counter` is over.
     Read {
         /// The page's id.
         id: u32,
@@ -224,6 +236,15 @@ mod tests {
                     },
                 },
                 r#"{"ddc":{"read":{"id":4,"bus":"Loop","unit":250,"block":{"table":"holding","start":0,"count":56}}}}"#,
+            ),
+            (
+                DdcAsk::Counter {
+                    id: 5,
+                    bus: "Loop".into(),
+                    unit: 3,
+                    sub_function: 11,
+                },
+                r#"{"ddc":{"counter":{"id":5,"bus":"Loop","unit":3,"sub_function":11}}}"#,
             ),
         ];
         for (ask, json) in asks {

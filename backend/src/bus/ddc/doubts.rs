@@ -6,6 +6,7 @@
 //! then has the wrong length and is thrown away. This costs nothing, needs no function of the unit,
 //! and leaves the order and the pace of the polls as the guide wants them.
 
+use crate::bus::query::Query;
 use shared::address::Address;
 use shared::encode::Read;
 use std::time::Duration;
@@ -17,14 +18,14 @@ const REGISTERS: u16 = 56;
 /// Reads of one unit that were given up and may be answered yet.
 #[derive(Debug, Default)]
 pub(super) struct Doubts {
-    given_up: Vec<(Read, Instant, Duration)>,
+    given_up: Vec<(Query, Instant, Duration)>,
 }
 
 impl Doubts {
     /// A read was given up; its answer may come for so long.
-    pub fn add(&mut self, read: Read, now: Instant, quarantine: Duration) {
-        self.given_up.retain(|(other, ..)| !alike(*other, read));
-        self.given_up.push((read, now, quarantine));
+    pub fn add(&mut self, query: &Query, now: Instant, quarantine: Duration) {
+        self.given_up.retain(|(other, ..)| !alike(other, query));
+        self.given_up.push((query.clone(), now, quarantine));
     }
 
     /// Bytes came that nobody waited for: what was late may be later still.
@@ -40,10 +41,10 @@ impl Doubts {
     }
 
     /// When this read can be trusted; `None` at once.
-    pub fn until(&mut self, read: Read, now: Instant) -> Option<Instant> {
+    pub fn until(&mut self, query: &Query, now: Instant) -> Option<Instant> {
         self.given_up
             .retain(|(_, since, wait)| *since + *wait > now);
-        let same = self.given_up.iter().find(|(other, ..)| alike(*other, read));
+        let same = self.given_up.iter().find(|(other, ..)| alike(other, query));
         same.map(|(_, since, wait)| *since + *wait)
     }
 
@@ -52,7 +53,7 @@ impl Doubts {
     pub fn poll(&mut self, usual: Read, now: Instant) -> Result<Read, Instant> {
         let mut soonest: Option<Instant> = None;
         for read in shapes(usual) {
-            match self.until(read, now) {
+            match self.until(&read.into(), now) {
                 None => return Ok(read),
                 Some(at) => soonest = Some(soonest.map_or(at, |s| s.min(at))),
             }
@@ -62,8 +63,14 @@ impl Doubts {
 }
 
 /// True if the answer to one could be taken for that to the other.
-fn alike(one: Read, other: Read) -> bool {
-    one.table == other.table && one.response_len() == other.response_len()
+fn alike(one: &Query, other: &Query) -> bool {
+    match (one, other) {
+        (Query::Read(one), Query::Read(other)) => {
+            one.table == other.table && one.response_len() == other.response_len()
+        }
+        // An answer names its counter; an older value of the same one is what is feared.
+        _ => one == other,
+    }
 }
 
 /// The usual read, and longer ones that contain it.
@@ -97,7 +104,7 @@ mod tests {
         for more in 0..5 {
             let next = doubts.poll(usual, now).unwrap();
             assert_eq!(next, read(7, 6 + more));
-            doubts.add(next, now + WAIT * u32::from(more), WAIT);
+            doubts.add(&next.into(), now + WAIT * u32::from(more), WAIT);
         }
         assert_eq!(doubts.poll(usual, now + WAIT - WAIT / 100), Ok(read(7, 11)));
         assert_eq!(doubts.poll(usual, now + WAIT), Ok(usual));
@@ -114,7 +121,7 @@ mod tests {
             while let Ok(next) = doubts.poll(usual, now) {
                 let (from, to) = (next.start.get(), next.start.get() + next.count());
                 assert!(from <= start && to >= start + count && to <= REGISTERS);
-                doubts.add(next, now, WAIT);
+                doubts.add(&next.into(), now, WAIT);
                 seen += 1;
             }
             assert_eq!(seen, 57 - count, "{start}+{count}");
@@ -126,15 +133,22 @@ mod tests {
     async fn what_is_late_keeps_being_doubted() {
         let mut doubts = Doubts::default();
         let now = Instant::now();
-        doubts.add(read(7, 6), now, WAIT);
+        doubts.add(&read(7, 6).into(), now, WAIT);
         doubts.stray(now + WAIT / 2);
-        assert!(doubts.until(read(40, 6), now + WAIT).is_some());
-        assert_eq!(doubts.until(read(40, 6), now + WAIT + WAIT / 2), None);
+        assert!(doubts.until(&read(40, 6).into(), now + WAIT).is_some());
+        assert_eq!(
+            doubts.until(&read(40, 6).into(), now + WAIT + WAIT / 2),
+            None
+        );
         // Coils are told apart by their function.
-        doubts.add(read(7, 6), now, WAIT);
+        doubts.add(&read(7, 6).into(), now, WAIT);
         let coils = Read::new(Table::Coil, Address::new(0), 9).unwrap();
-        assert_eq!(doubts.until(coils, now), None);
+        assert_eq!(doubts.until(&coils.into(), now), None);
+        // Counters are told apart by their sub-function.
+        doubts.add(&Query::Diagnostic(11), now, WAIT);
+        assert!(doubts.until(&Query::Diagnostic(11), now).is_some());
+        assert_eq!(doubts.until(&Query::Diagnostic(12), now), None);
         doubts.clear();
-        assert_eq!(doubts.until(read(7, 6), now), None);
+        assert_eq!(doubts.until(&read(7, 6).into(), now), None);
     }
 }

@@ -2,8 +2,10 @@
 
 use super::Actor;
 use super::port::Port;
+use crate::bus::query::Query;
 use crate::bus::timing::Timing;
 use crate::bus::{Answer, Fault};
+use shared::address::{Address, Table};
 use shared::ddc100::{HostPort, timing};
 use shared::encode::Read;
 use std::io;
@@ -31,7 +33,7 @@ impl Actor {
         &mut self,
         number: HostPort,
         at: usize,
-        read: Read,
+        query: &Query,
     ) -> Result<Answer, Fault> {
         for port in &self.ports {
             port.drive(port.number == number);
@@ -42,7 +44,12 @@ impl Actor {
         };
         let (address, setup) = (unit.address, self.poller.setup());
         // A long answer takes longer, and so does the unit (reading D24).
-        let timeout = timing::timeout(setup.line, unit.kind, &read, setup.timeout_us);
+        let timeout = timing::timeout(
+            setup.line,
+            unit.kind,
+            &like(query, self.usual),
+            setup.timeout_us,
+        );
         let timeout = Duration::from_micros(timeout);
         let mut active = None;
         let mut other = None;
@@ -62,8 +69,7 @@ impl Actor {
         line.busy_until(quiet);
         let stray = line.stray();
         let (result, lost) = {
-            let query = read.into();
-            let work = pin!(line.read(address, &query));
+            let work = pin!(line.read(address, query));
             beside(work, other).await
         };
         let now = Instant::now();
@@ -86,14 +92,22 @@ impl Actor {
                     timeout,
                     ..self.timing
                 };
-                let quarantine = timing.quarantine(read.response_len(), false);
+                let quarantine = timing.quarantine(query.response_len(), false);
                 if let Some(unit) = self.units.get_mut(at) {
-                    unit.doubts.add(read, now, quarantine);
+                    unit.doubts.add(query, now, quarantine);
                 }
             }
             _ => {}
         }
         result
+    }
+}
+
+/// A read that takes a unit and the wire as long, or a little longer.
+fn like(query: &Query, usual: Read) -> Read {
+    match query {
+        Query::Read(read) => *read,
+        _ => Read::new(Table::Holding, Address::new(0), 2).unwrap_or(usual),
     }
 }
 

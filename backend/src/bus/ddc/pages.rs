@@ -5,7 +5,6 @@ use crate::bus::query::Query;
 use crate::bus::{Command, Reply, Report, words};
 use shared::ddc100::HostPort;
 use shared::ddc100::poller::Other;
-use shared::encode::Read;
 use shared::proto::Outcome;
 use tokio::time::Instant;
 
@@ -24,7 +23,7 @@ enum Origin {
 pub(super) struct Job {
     /// Which unit.
     at: usize,
-    read: Read,
+    query: Query,
     origin: Origin,
     tried: u8,
 }
@@ -38,18 +37,16 @@ impl Actor {
                 query,
                 reply,
             } => {
-                let Query::Read(read) = query else {
-                    let text = "a field unit has no files, report or counters".to_owned();
-                    return reply(Report::failed(Outcome::Refused, text));
-                };
-                let why = if device >= self.units.len() {
+                let why = if !matches!(query, Query::Read(_) | Query::Diagnostic(_)) {
+                    "a field unit has no files and no report"
+                } else if device >= self.units.len() {
                     "there is no such device"
                 } else if self.jobs.len() >= MAX_JOBS {
                     "too much is waiting for this network; try again later"
                 } else {
                     return self.jobs.push_back(Job {
                         at: device,
-                        read,
+                        query,
                         origin: Origin::Once(reply),
                         tried: 0,
                     });
@@ -112,12 +109,12 @@ impl Actor {
     /// What somebody waits for goes first; then what is watched, one unit after the other.
     fn next_job(&mut self, now: Instant) -> Option<Job> {
         let units = &mut self.units;
-        let mut free = |at: usize, read: Read| {
+        let mut free = |at: usize, query: &Query| {
             let unit = units.get_mut(at);
-            unit.is_some_and(|u| u.doubts.until(read, now).is_none())
+            unit.is_some_and(|u| u.doubts.until(query, now).is_none())
         };
         if let Some(job) = (0..self.jobs.len())
-            .find(|n| self.jobs.get(*n).is_some_and(|j| free(j.at, j.read)))
+            .find(|n| self.jobs.get(*n).is_some_and(|j| free(j.at, &j.query)))
             .and_then(|n| self.jobs.remove(n))
         {
             return Some(job);
@@ -134,11 +131,12 @@ impl Actor {
             let Some(read) = unit.plan.due(now) else {
                 continue;
             };
-            if unit.doubts.until(read, now).is_none() {
+            let query = read.into();
+            if unit.doubts.until(&query, now).is_none() {
                 self.turn = at;
                 return Some(Job {
                     at,
-                    read,
+                    query,
                     origin: Origin::Watch,
                     tried: 0,
                 });
@@ -155,7 +153,7 @@ impl Actor {
             self.poller.done(Outcome::Refused, now);
             return;
         };
-        let result = self.exchange(port, job.at, job.read).await;
+        let result = self.exchange(port, job.at, &job.query).await;
         job.tried = job.tried.saturating_add(1);
         let ended = self.clock.at(self.quiet_from);
         let report = match result {
@@ -178,8 +176,8 @@ impl Actor {
             Origin::Once(_) if failed && job.tried <= self.retries => self.jobs.push_front(job),
             Origin::Once(reply) => reply(report),
             Origin::Watch => {
-                if let Some(unit) = self.units.get_mut(job.at) {
-                    unit.plan.done(job.read, Instant::now());
+                if let (Some(unit), Query::Read(read)) = (self.units.get_mut(job.at), job.query) {
+                    unit.plan.done(read, Instant::now());
                     let good = report.outcome == Outcome::Ok;
                     unit.trouble = (!good).then_some((report.outcome, report.text));
                 }

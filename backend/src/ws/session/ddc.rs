@@ -1,11 +1,12 @@
 //! What a page asks about a DDC-100 network.
 
 use super::{Followed, MAX_READS, Page, not_allowed, refused, unknown};
+use crate::bus::query::{Query, is_counter};
 use crate::bus::recorder::encode;
 use crate::bus::{Command, Report};
 use crate::clock::Clock;
 use axum::extract::ws::Utf8Bytes;
-use shared::proto::{Block, DdcAsk, DdcNews, Outcome};
+use shared::proto::{DdcAsk, DdcNews, Outcome};
 use shared::render::hex;
 
 impl Page<'_> {
@@ -41,12 +42,39 @@ impl Page<'_> {
                     request: block.read().map(|r| r.pdu().to_vec()).unwrap_or_default(),
                     clock: self.plant.clock(),
                 };
-                self.read_unit(question, block).await
+                let query = block.read().map(Query::Read);
+                self.read_unit(question, query.ok_or_else(|| not_allowed(block)))
+                    .await
+            }
+            DdcAsk::Counter {
+                id,
+                bus,
+                unit,
+                sub_function,
+            } => {
+                let query = Query::Diagnostic(sub_function);
+                let question = Question {
+                    id,
+                    bus,
+                    unit,
+                    request: query.pdu(),
+                    clock: self.plant.clock(),
+                };
+                let refusal = format!(
+                    "Sub-function {sub_function} of function 08 does not read; 2 and 11 to 18 do."
+                );
+                let query = is_counter(sub_function).then_some(query).ok_or(refusal);
+                self.read_unit(question, query).await
             }
         }
     }
 
-    async fn read_unit(&mut self, question: Question, block: Block) -> Option<Utf8Bytes> {
+    /// Asks a unit; an error is what the page is told instead.
+    async fn read_unit(
+        &mut self,
+        question: Question,
+        query: Result<Query, String>,
+    ) -> Option<Utf8Bytes> {
         let (bus, unit) = (&question.bus, question.unit);
         let network = self.plant.network(bus).is_some();
         let tag = self.plant.tag(bus, unit).filter(|_| network);
@@ -58,8 +86,9 @@ impl Page<'_> {
             };
             return Some(question.answer(Report::refused(text)));
         };
-        let Some(read) = block.read() else {
-            return Some(question.answer(Report::refused(not_allowed(block))));
+        let query = match query {
+            Ok(query) => query,
+            Err(text) => return Some(question.answer(Report::refused(text))),
         };
         if self.reads >= MAX_READS {
             let text = format!("{MAX_READS} reads are under way already; wait for them.");
@@ -73,7 +102,7 @@ impl Page<'_> {
         });
         let command = Command::Read {
             device,
-            query: read.into(),
+            query,
             reply,
         };
         handle.ask(command).await;

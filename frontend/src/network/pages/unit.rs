@@ -65,6 +65,7 @@ pub(super) fn UnitPage() -> impl IntoView {
         unit::bits(html, "Timers and analog channels", "timers", &view.timers);
         unit::bits(html, "User faults", "user-faults", &view.user_faults);
         unit::differences(html, of.device);
+        unit::counters(html, of, store.online.get(), store.now_us.get());
     });
     let reading = draw(|html, store, net, of, _| {
         unit::reading(html, of.info.unit, net.asked.as_ref(), store.online.get());
@@ -87,6 +88,11 @@ pub(super) fn UnitPage() -> impl IntoView {
             let mut tags = store.tags.get_untracked();
             tags.set_scaling(unit, scaling);
             store.set_tags(tags);
+        }
+        "counters" => {
+            if let Some(unit) = address(store) {
+                store.read_counters(unit);
+            }
         }
         _ => {
             if let Some(unit) = address(store) {

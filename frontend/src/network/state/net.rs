@@ -4,9 +4,11 @@
 #[cfg(test)]
 pub(crate) mod tests;
 
+use std::collections::BTreeMap;
+
 use shared::capture::Micros;
 use shared::ddc100::diagnosis::Diagnosis;
-use shared::ddc100::{FaultTable, HostPort};
+use shared::ddc100::{FaultTable, HostPort, counters};
 use shared::device::Device;
 use shared::image::Image;
 use shared::proto::{DdcNews, DdcShape, DdcUnit, LineState, Outcome};
@@ -104,6 +106,19 @@ pub struct Unit {
     pub at: Option<u64>,
     /// How long it took, in microseconds.
     pub took: Option<u64>,
+    /// Counters of function 08 that were asked for, by their sub-function.
+    pub counters: BTreeMap<u16, Counted>,
+}
+
+/// A counter that was asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Counted {
+    /// No answer yet.
+    Asked,
+    /// Its value, and when it came, in microseconds of the backend.
+    Value(u16, u64),
+    /// Why it could not be read.
+    Failed(String),
 }
 
 impl Unit {
@@ -118,7 +133,21 @@ impl Unit {
             fault: [None; 2],
             at: None,
             took: None,
+            counters: BTreeMap::new(),
         }
+    }
+
+    /// Takes the answer to a counter in, or why there is none.
+    fn counted(&mut self, request: &[u8], response: &[u8], text: &str, at_us: u64) {
+        let &[8, high, low, ..] = request else {
+            return;
+        };
+        let sub = u16::from_be_bytes([high, low]);
+        let counted = match counters::answer(request, response) {
+            Some(counter) => Counted::Value(counter.value, at_us),
+            None => Counted::Failed(text.to_owned()),
+        };
+        self.counters.insert(sub, counted);
     }
 
     /// Which of so many ports reach it.
@@ -286,12 +315,10 @@ impl Net {
                 at_us,
                 bus: _,
             } => {
+                let (request, response) = (bytes_of(&request), bytes_of(&response));
                 if let Some(unit) = self.unit_mut(unit) {
-                    unit.image.absorb(
-                        &bytes_of(&request),
-                        &bytes_of(&response),
-                        Micros::new(at_us),
-                    );
+                    unit.image.absorb(&request, &response, Micros::new(at_us));
+                    unit.counted(&request, &response, &text, at_us);
                 }
                 if let Some(asked) = self.asked.as_mut().filter(|a| a.id == id) {
                     asked.end = Some((outcome, text));
@@ -347,8 +374,21 @@ impl Net {
         });
     }
 
+    /// Counters of a unit were asked for.
+    pub fn ask_counters(&mut self, unit: u8) {
+        if let Some(unit) = self.unit_mut(unit) {
+            let asked = counters::READS.map(|sub| (sub, Counted::Asked));
+            unit.counters.extend(asked);
+        }
+    }
+
     /// The connection is lost: what was asked will not be answered.
     pub fn lost(&mut self) {
+        for counted in self.units.iter_mut().flat_map(|u| u.counters.values_mut()) {
+            if *counted == Counted::Asked {
+                *counted = Counted::Failed("the connection to the bridge was lost".to_owned());
+            }
+        }
         if let Some(asked) = self.asked.as_mut().filter(|a| a.end.is_none()) {
             let words = "The connection to the bridge was lost.";
             asked.end = Some((Outcome::Down, words.to_owned()));

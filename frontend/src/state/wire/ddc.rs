@@ -135,6 +135,17 @@ pub fn write(ask: &DdcAsk) -> String {
             body.number("unit", u64::from(*unit));
             body.name("block").block(*block);
         }
+        DdcAsk::Counter {
+            id,
+            bus,
+            unit,
+            sub_function,
+        } => {
+            let body = body.begin("counter");
+            body.number("id", u64::from(*id)).text("bus", bus);
+            body.number("unit", u64::from(*unit))
+                .number("sub_function", u64::from(*sub_function));
+        }
     }
     out.push_str("}}}");
     out
@@ -289,6 +300,12 @@ mod tests {
                 bus: bus(),
                 unit: 250,
                 block,
+            },
+            DdcAsk::Counter {
+                id: 0,
+                bus: bus(),
+                unit: 1,
+                sub_function: u16::MAX,
             },
         ] {
             let text = write(&ask);
