@@ -92,7 +92,7 @@ fn native(verb: &str, args: &[&str]) -> Command {
 const PEERS: [&str; 2] = ["peers", "hart_peers"];
 
 /// Tests of the binary with a browser.
-const END_TO_END: [&str; 4] = ["e2e", "e2e_ddc", "e2e_dop", "e2e_hart"];
+const END_TO_END: [&str; 5] = ["e2e", "e2e_ddc", "e2e_dop", "e2e_hart", "e2e_icon"];
 
 /// Selects the binary together with the tests that start it: without a test among the targets,
 /// cargo would leave out the dev-dependencies, unify other features and compile most of it again.
