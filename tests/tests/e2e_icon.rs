@@ -307,10 +307,10 @@ async fn everything_else_is_shown_as_it_was_read() {
     look(&page, "identity").await;
 
     go(&page, "communication").await;
-    let messages = snapshot.counters.get(&11).expect("a counter").to_string();
+    let messages = snapshot.counters.get(&14).expect("a counter").to_string();
     until(
         &page,
-        "[data-testid=counter][data-sub='11']",
+        "[data-testid=counter][data-sub='14']",
         &format!("$.innerText.replaceAll('\\u2009', '').includes('{messages}')"),
     )
     .await;

@@ -68,6 +68,8 @@ pub struct Store {
     /// Microseconds of the backend's clock, once a second.
     pub now_us: RwSignal<u64>,
     next: StoredValue<u32>,
+    /// The last `hello`: what it says of a device is needed again when another is shown.
+    greeting: StoredValue<Option<ToPage>>,
 }
 
 impl Store {
@@ -81,11 +83,14 @@ impl Store {
             tag: memo(move || place.with(|p| p.device.clone().unwrap_or_default())),
             tab: memo(move || place.with(|p| p.tab.clone())),
             online: memo(move || place.with(|p| p.online)),
-            site: RwSignal::new(Site::default()),
+            site: RwSignal::new(kept(
+                &place.with_untracked(|p| p.device.clone().unwrap_or_default()),
+            )),
             saved: RwSignal::new(saved),
             now: RwSignal::new(wall_now()),
             now_us: RwSignal::new(guest.now_us()),
             next: StoredValue::new(first_id()),
+            greeting: StoredValue::new(None),
         };
         provide_context(store);
         let clock = set_interval_with_handle(
@@ -102,16 +107,13 @@ impl Store {
             }
             store.keep();
         });
+        // Effects run after the first messages were heard, so this must not undo what they said.
         effect(move || {
             let tag = store.tag.get();
-            let kept = KEPT.with_borrow(|kept| {
-                let site = kept.sites.iter().find(|s| s.dossier.tag == tag);
-                site.cloned()
-            });
-            store.site.set(kept.unwrap_or_else(|| Site {
-                dossier: Dossier::new(&tag, Device::None),
-                ..Site::default()
-            }));
+            if store.site.with_untracked(|s| s.dossier.tag != tag) {
+                store.site.set(kept(&tag));
+                store.greet();
+            }
         });
         guest.listen(move |text| store.hear(text));
         effect(move || {
@@ -194,18 +196,30 @@ impl Store {
                     self.send(&ask);
                 }
             }
-        } else if let Ok(ToPage::Hello {
-            now_us,
-            wall_ms,
-            devices,
-            ..
-        }) = wire::read(text)
-        {
-            let found = devices.iter().find(|d| d.tag == tag);
-            let device = found.and_then(|d| Some((Device::from_key(&d.kind)?, d.unit)));
-            let start = wall_ms.saturating_sub(now_us / 1000);
-            self.site.update(|site| site.greeted(device, start));
+        } else if let Ok(hello @ ToPage::Hello { .. }) = wire::read(text) {
+            self.greeting.set_value(Some(hello));
+            self.greet();
         }
+    }
+
+    /// Tells the device that is shown what the last `hello` says of it.
+    fn greet(self) {
+        self.greeting.with_value(|greeting| {
+            if let Some(ToPage::Hello {
+                now_us,
+                wall_ms,
+                devices,
+                ..
+            }) = greeting
+            {
+                let start = wall_ms.saturating_sub(now_us / 1000);
+                self.site.update(|site| {
+                    let found = devices.iter().find(|d| d.tag == site.dossier.tag);
+                    let device = found.and_then(|d| Some((Device::from_key(&d.kind)?, d.unit)));
+                    site.greeted(device, start);
+                });
+            }
+        });
     }
 
     /// Ends a read of which nothing is heard any more.
@@ -385,6 +399,15 @@ impl Site {
         }
         None
     }
+}
+
+/// What is known of a device from an earlier visit, or a device of which nothing is known.
+fn kept(tag: &str) -> Site {
+    let kept = KEPT.with_borrow(|kept| kept.sites.iter().find(|s| s.dossier.tag == tag).cloned());
+    kept.unwrap_or_else(|| Site {
+        dossier: Dossier::new(tag, Device::None),
+        ..Site::default()
+    })
 }
 
 const fn id_of(news: &IconNews) -> u32 {
