@@ -322,21 +322,29 @@ fn map(
         .clone()
         .filter(|(_, f)| f.sub.is_none())
         .fold(0_u128, |codes, (_, f)| codes | 1 << f.code);
+    // A program that never shows these devices keeps the name of a map only.
+    let (only, none) = match device.key.as_str() {
+        "ddc100" => ("if cfg!(feature = \"ddc100\") { ", " } else { &[] }"),
+        _ => ("", ""),
+    };
     writeln!(
         out,
-        "    whole: {}, last_unit: {}, codes: {codes:#x}, functions: &[",
+        "    whole: {}, last_unit: {}, codes: {codes:#x}, functions: {only}&[",
         name(EXTENTS, model.extent),
         model.units
     )?;
     for (index, _) in known {
         writeln!(out, "        &{prefix}_FUNCTIONS[{index}],")?;
     }
-    writeln!(out, "    ],")?;
-    writeln!(out, "    readings: &{prefix}_READINGS, rows: &[")?;
+    writeln!(out, "    ]{none},")?;
+    writeln!(
+        out,
+        "    readings: {only}&{prefix}_READINGS{none}, rows: {only}&["
+    )?;
     for item in items {
         writeln!(out, "        {item},")?;
     }
-    writeln!(out, "    ],\n    keys: &{keys:?},\n}};\n")
+    writeln!(out, "    ]{none},\n    keys: {only}&{keys:?}{none},\n}};\n")
 }
 
 fn write_gap(

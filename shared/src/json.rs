@@ -2,6 +2,8 @@
 //!
 //! One object a line. See the README for every key.
 
+pub mod value;
+
 use core::fmt::{self, Write};
 
 use crate::frame::{Frame, Framing};

@@ -281,7 +281,7 @@ impl Sequence {
 pub(super) fn who(bytes: &[u8]) -> String {
     let header = Header::of(bytes);
     let name = header.and_then(|h| HART_IP_MESSAGE_ID.name(u32::from(h.id)));
-    let name = name.unwrap_or("HART-IP").to_lowercase();
+    let name = name.unwrap_or("HART-IP").to_ascii_lowercase();
     let carried = header.is_some_and(|h| h.id == TOKEN_PASSING);
     match bytes.get(HEADER..).filter(|_| carried).and_then(identity) {
         Some((head, number)) if head.address != Address::BROADCAST => {

@@ -278,7 +278,7 @@ impl Collector {
             return false;
         }
         let name = crate::pdu::names::exception(code).map_or("unknown exception", |e| e.0);
-        let why = format!("exception {code:02}: {}", name.to_lowercase());
+        let why = format!("exception {code:02}: {}", name.to_ascii_lowercase());
         self.failed(&step, &why);
         // Without the function there are no files at all.
         if code == 1 && step.pdu.first() == Some(&READ_FILE) {

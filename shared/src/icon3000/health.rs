@@ -5,6 +5,7 @@
 
 use super::model::{HEALTH, Meaning, Ne107};
 use crate::address::Table;
+use crate::few;
 use crate::image::Image;
 use crate::map::row::{Kind, Model, Row, Source};
 
@@ -95,7 +96,7 @@ pub fn health(model: Model, image: &Image) -> Health {
             .findings
             .extend(active.map(|meaning| Finding { meaning, row }));
     }
-    health.findings.sort_by_key(|f| rank(f.meaning.status));
+    few::sort_by_key(&mut health.findings, |f| rank(f.meaning.status));
     health
 }
 

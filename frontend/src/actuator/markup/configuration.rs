@@ -59,9 +59,9 @@ pub fn is_marked(dossier: &Dossier, row: &'static Row) -> bool {
 
 impl Filter {
     fn passes(&self, dossier: &Dossier, row: &'static Row) -> bool {
-        let text = self.text.trim().to_lowercase();
+        let text = self.text.trim().to_ascii_lowercase();
         let named = text.is_empty()
-            || row.label.to_lowercase().contains(&text)
+            || row.label.to_ascii_lowercase().contains(&text)
             || row.address.get().to_string().starts_with(&text);
         let grouped = self.group.is_empty() || row.group == self.group;
         named && grouped && (!self.marked || is_marked(dossier, row))

@@ -1,6 +1,7 @@
 //! Curves: what there is, what is shown, and the numbers behind them.
 
 use shared::address::{Address, Table};
+use shared::few;
 
 use super::super::state::curves::{Preset, Trace};
 use super::super::state::dossier::Dossier;
@@ -99,8 +100,8 @@ pub fn list(html: &mut Markup, traces: &[Trace], shown: &[String]) {
             continue;
         }
         let mut now = shown.to_vec();
-        keys.sort();
-        now.sort();
+        few::sort_by(&mut keys, Ord::cmp);
+        few::sort_by(&mut now, Ord::cmp);
         html.open(
             "button",
             &[

@@ -64,7 +64,7 @@ pub fn filters(html: &mut Markup, table: &Table, filter: &Filter) {
             .map(|m| (m.value.to_string(), m.label))
             .collect();
         let value = filter.code.map_or_else(String::new, |c| c.to_string());
-        let label = format!("Every {}", field.label.to_lowercase());
+        let label = format!("Every {}", field.label.to_ascii_lowercase());
         Choice {
             act: "code",
             testid: "log-code",
@@ -96,7 +96,7 @@ pub fn status(html: &mut Markup, dossier: &Dossier, table: &Table, shown: usize)
     } else {
         "record"
     };
-    html.node("b", "", &count(rows, &noun.to_lowercase()));
+    html.node("b", "", &count(rows, &noun.to_ascii_lowercase()));
     if let Some(stored) = table.stored.filter(|s| u64::from(*s) != rows) {
         html.text(&format!(" of {stored} stored"));
     }

@@ -1,6 +1,7 @@
 //! Torque signatures: every curve that a device holds, from its registers and from its files.
 
 use shared::address::Table;
+use shared::few;
 use shared::icon3000::curve::{Curve, Direction, Origin, Which};
 use shared::map::row::{Kind, Row};
 use shared::scale::Scale;
@@ -80,7 +81,7 @@ pub fn traces(dossier: &Dossier) -> Vec<Trace> {
             found.extend(curve.map(|curve| trace(curve, format!("file-{number}"))));
         }
     }
-    found.sort_by_key(|trace| (!trace.opening, trace.number));
+    few::sort_by_key(&mut found, |trace| (!trace.opening, trace.number));
     found
 }
 
@@ -189,7 +190,9 @@ impl Preset {
 #[must_use]
 pub fn chart(traces: &[&Trace]) -> Chart {
     let mut order: Vec<&Trace> = traces.to_vec();
-    order.sort_by_key(|t| (!t.is_reference(), core::cmp::Reverse(t.number)));
+    few::sort_by_key(&mut order, |t| {
+        (!t.is_reference(), core::cmp::Reverse(t.number))
+    });
     let both = order.iter().any(|t| t.opening) && order.iter().any(|t| !t.opening);
     let twice = |t: &Trace| order.iter().filter(|o| o.label == t.label).count() > 1;
     let series = order.iter().map(|t| Series {

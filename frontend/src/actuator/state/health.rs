@@ -1,6 +1,7 @@
 //! What is wrong with the device, by NAMUR NE 107, the worst first.
 
 use shared::address::Table;
+use shared::few;
 use shared::icon3000::model::{HEALTH, Meaning};
 use shared::map::row::{Access, Kind, Row};
 use shared::value::Value;
@@ -74,7 +75,7 @@ pub fn past(dossier: &Dossier, most: usize) -> Vec<Past> {
             }
         }
     }
-    found.sort_by_key(|p| core::cmp::Reverse(p.time));
+    few::sort_by_key(&mut found, |p| core::cmp::Reverse(p.time));
     found.truncate(most);
     found
 }

@@ -175,7 +175,7 @@ impl Table {
     /// Places of the rows that pass a filter, in its order.
     #[must_use]
     pub fn matching(&self, filter: &Filter) -> Vec<usize> {
-        let wanted = filter.text.trim().to_lowercase();
+        let wanted = filter.text.trim().to_ascii_lowercase();
         let mut found: Vec<usize> = self
             .rows
             .iter()
@@ -212,7 +212,7 @@ impl Row {
             || self.time.is_some_and(|t| stamp(t).contains(wanted))
             || cells
                 .clone()
-                .any(|c| c.text.to_lowercase().contains(wanted));
+                .any(|c| c.text.to_ascii_lowercase().contains(wanted));
         let coded = code.is_none_or(|code| {
             let last = columns.iter().rposition(|f| f.kind == Kind::Enum);
             let cell = last.and_then(|at| self.cells.get(at)?.as_ref());

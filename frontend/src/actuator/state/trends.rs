@@ -66,7 +66,7 @@ pub fn charts(dossier: &Dossier, file: u16) -> Vec<Chart> {
         };
         Chart {
             key: format!("trend-{file}-{}", of_unit.first().map_or("", |f| f.key)),
-            title: format!("{}: {}", log.name(), label.to_lowercase()),
+            title: format!("{}: {}", log.name(), label.to_ascii_lowercase()),
             x: Axis {
                 label: "Time".to_owned(),
                 unit: "device clock".to_owned(),

@@ -35,7 +35,7 @@ pub(super) fn BusPage() -> impl IntoView {
         match act.name.as_str() {
             "scan" => store.scan(),
             "tag" => tag.set(act.value),
-            "find" => store.find(wanted().to_uppercase(), false),
+            "find" => store.find(wanted().to_ascii_uppercase(), false),
             "find-long" => store.find(wanted(), true),
             _ => store.cancel(store.search),
         }

@@ -29,7 +29,7 @@ pub fn forced(unit: &Unit) -> Vec<String> {
         let words = unit.text(133, "mode").unwrap_or_else(|| mode.to_string());
         all.push(format!(
             "Control mode: {}. The valve does not follow the loop current.",
-            words.to_lowercase()
+            words.to_ascii_lowercase()
         ));
     }
     if unit.status.is_some_and(|(status, _)| status & FIXED != 0) {
@@ -155,7 +155,7 @@ mod tests {
             let bits = additional(family, 4).unwrap();
             let label = |bit: u8| {
                 let bit = bits.bits.iter().find(|b| b.bit == bit).unwrap();
-                bit.label.to_lowercase()
+                bit.label.to_ascii_lowercase()
             };
             assert!(label(1).contains("close") && label(1).contains("limit"));
             assert!(label(2).contains("open") && label(2).contains("limit"));

@@ -82,7 +82,7 @@ pub fn head(html: &mut Markup, order: Order) {
         };
         html.open("span", &[("class", class)]);
         let name = format!("sort-{}", column.key());
-        let title = format!("Sort by {}", column.label().to_lowercase());
+        let title = format!("Sort by {}", column.label().to_ascii_lowercase());
         html.open(
             "button",
             &[

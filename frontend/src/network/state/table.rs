@@ -151,7 +151,7 @@ fn key(unit: &Unit, judged: &Judged, tags: &Tags, column: Column) -> Key {
         Column::Unit => Key::Number(u64::from(unit.info.unit)),
         Column::Tag => match tags.tag(unit) {
             "" => Key::None,
-            tag => Key::Text(tag.to_lowercase()),
+            tag => Key::Text(tag.to_ascii_lowercase()),
         },
         // What is on no scale follows what is.
         Column::Position => maybe(judged.view.position.as_ref().map(|analog| {
@@ -188,9 +188,9 @@ fn wanted(unit: &Unit, judged: &Judged, tags: &Tags, query: &str) -> bool {
         text.push(' ');
         text.push_str(bit.member.label);
     }
-    let text = text.to_lowercase();
+    let text = text.to_ascii_lowercase();
     query
-        .to_lowercase()
+        .to_ascii_lowercase()
         .split_whitespace()
         .all(|word| text.contains(word))
 }

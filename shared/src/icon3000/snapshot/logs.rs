@@ -244,7 +244,7 @@ fn lower(item: &str) -> String {
     match (chars.next(), chars.next()) {
         (Some(first), Some(second)) if second.is_lowercase() => {
             let rest = item.get(first.len_utf8()..).unwrap_or_default();
-            format!("{}{rest}", first.to_lowercase())
+            format!("{}{rest}", first.to_ascii_lowercase())
         }
         _ => item.to_owned(),
     }

@@ -1,6 +1,6 @@
 //! Any bytes to a snapshot and what is wrong with them, by line.
 
-use serde_json::{Map, Value};
+use std::borrow::Cow;
 
 use super::file::{FORMAT, VERSION};
 use super::{Failure, Part, Snapshot};
@@ -8,12 +8,58 @@ use crate::address::{Address, Table};
 use crate::capture::Micros;
 use crate::icon3000::plan::Span;
 use crate::icon3000::records::RECORDS;
+use crate::json::value::Json;
 use crate::map::row::Model;
 
 /// A file is not read beyond this: the largest snapshot is far below a megabyte.
 pub const LONGEST: usize = 16 << 20;
 /// More problems than these are only counted.
 const MOST_PROBLEMS: usize = 100;
+
+/// A value of the file; it has no others.
+#[derive(Clone, Debug)]
+enum Scalar {
+    Text(String),
+    Number(u64),
+    Other,
+}
+
+impl Scalar {
+    fn text(&self) -> Option<&str> {
+        match self {
+            Self::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    const fn number(&self) -> Option<u64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+}
+
+/// Members of an object, in the order in which they came.
+type Members = Vec<(String, Scalar)>;
+
+/// A member; where a name comes twice, the last one counts.
+fn get<'a>(members: &'a Members, key: &str) -> Option<&'a Scalar> {
+    let (_, value) = members.iter().rev().find(|(name, _)| name == key)?;
+    Some(value)
+}
+
+fn owned(members: &[(Cow<'_, str>, Json<'_>)]) -> Members {
+    let scalar = |json: &Json<'_>| match json {
+        Json::Text(text) => Scalar::Text(text.clone().into_owned()),
+        Json::Number(number) => Scalar::Number(*number),
+        _ => Scalar::Other,
+    };
+    let members = members.iter();
+    members
+        .map(|(key, value)| (key.clone().into_owned(), scalar(value)))
+        .collect()
+}
 
 /// What is wrong with a file, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,37 +95,40 @@ pub fn parse(bytes: &[u8]) -> (Option<Snapshot>, Vec<FileProblem>) {
         return (None, problems.list);
     }
     let text = String::from_utf8_lossy(bytes);
-    if matches!(text, std::borrow::Cow::Owned(_)) {
+    if matches!(text, Cow::Owned(_)) {
         problems.say(0, "some bytes are no UTF-8; they were replaced".to_owned());
     }
     let text = text.trim_start_matches('\u{feff}');
-    let mut head = Map::new();
-    let mut parts: Vec<(usize, Map<String, Value>)> = Vec::new();
+    let mut head = Members::new();
+    let mut parts: Vec<(usize, Members)> = Vec::new();
     let mut odd: Vec<usize> = Vec::new();
     for (line, text) in (1_usize..).zip(text.lines()) {
         split(line, text, &mut head, &mut parts, &mut odd);
     }
-    let ends = head.contains_key("format") && head.contains_key("hash");
+    let ends = get(&head, "format").is_some() && get(&head, "hash").is_some();
     if !odd.is_empty() || !ends {
         // Other white space than ours, or damaged.
-        match serde_json::from_str::<Value>(text) {
-            Ok(Value::Object(whole)) => {
-                let list = whole.get("parts").and_then(Value::as_array);
-                parts = list
-                    .into_iter()
-                    .flatten()
-                    .map(|part| (0, part.as_object().cloned().unwrap_or_default()))
-                    .collect();
-                head = whole;
+        match Json::read(text) {
+            Ok(Json::Object(whole)) => {
+                let list = whole.iter().rev().find(|(key, _)| key == "parts");
+                let list = list.and_then(|(_, list)| list.list()).unwrap_or(&[]);
+                let members = |part: &Json<'_>| part.members().map(owned).unwrap_or_default();
+                parts = list.iter().map(|part| (0, members(part))).collect();
+                head = owned(&whole);
             }
             Ok(_) => problems.say(1, "this is JSON, but not a snapshot".to_owned()),
-            Err(error) if head.contains_key("format") => {
-                problems.say(error.line(), format!("the JSON is damaged: {error}"));
-                for line in odd {
-                    problems.say(line, "this line was left out: it is no part".to_owned());
+            Err(at) => {
+                let before = text.get(..at).unwrap_or_default();
+                let line = before.matches('\n').count().saturating_add(1);
+                if get(&head, "format").is_some() {
+                    problems.say(line, "the JSON is damaged from here on".to_owned());
+                    for line in odd {
+                        problems.say(line, "this line was left out: it is no part".to_owned());
+                    }
+                } else {
+                    problems.say(line, "this is no JSON".to_owned());
                 }
             }
-            Err(error) => problems.say(error.line(), format!("this is no JSON: {error}")),
         }
     }
     let snapshot = build(&head, &parts, &mut problems);
@@ -114,8 +163,8 @@ impl Problems {
 fn split(
     line: usize,
     text: &str,
-    head: &mut Map<String, Value>,
-    parts: &mut Vec<(usize, Map<String, Value>)>,
+    head: &mut Members,
+    parts: &mut Vec<(usize, Members)>,
     odd: &mut Vec<usize>,
 ) {
     let text = text.trim();
@@ -124,30 +173,26 @@ fn split(
         return;
     }
     if text.starts_with('{') {
-        match serde_json::from_str::<Value>(text) {
-            Ok(Value::Object(part)) => parts.push((line, part)),
+        match Json::parse(text) {
+            Some(Json::Object(part)) => parts.push((line, owned(&part))),
             _ => odd.push(line),
         }
         return;
     }
-    match serde_json::from_str::<Value>(&format!("{{{text}}}")) {
-        Ok(Value::Object(pair)) if pair.len() == 1 => head.extend(pair),
+    match Json::parse(&format!("{{{text}}}")) {
+        Some(Json::Object(pair)) if pair.len() == 1 => head.extend(owned(&pair)),
         _ => odd.push(line),
     }
 }
 
-fn build(
-    head: &Map<String, Value>,
-    parts: &[(usize, Map<String, Value>)],
-    problems: &mut Problems,
-) -> Option<Snapshot> {
-    let text = |key: &str| head.get(key).and_then(Value::as_str).unwrap_or_default();
+fn build(head: &Members, parts: &[(usize, Members)], problems: &mut Problems) -> Option<Snapshot> {
+    let text = |key: &str| get(head, key).and_then(Scalar::text).unwrap_or_default();
     if text("format") != FORMAT {
         let say = format!("this is no snapshot: \"format\" is not \"{FORMAT}\"");
         problems.say(0, say);
         return None;
     }
-    match head.get("version").and_then(Value::as_u64) {
+    match get(head, "version").and_then(Scalar::number) {
         Some(VERSION) => {}
         Some(other) => problems.say(
             0,
@@ -165,7 +210,7 @@ fn build(
         problems.say(0, say);
         return None;
     };
-    let unit = head.get("unit").and_then(Value::as_u64);
+    let unit = get(head, "unit").and_then(Scalar::number);
     let unit = unit.and_then(|u| u8::try_from(u).ok());
     if unit.is_none() {
         problems.say(
@@ -176,7 +221,7 @@ fn build(
     let mut snapshot = Snapshot::new(model, unit.unwrap_or(0), text("tag"));
     snapshot.tool = text("tool").to_owned();
     snapshot.taken = text("taken").to_owned();
-    snapshot.took_ms = head.get("took_ms").and_then(Value::as_u64);
+    snapshot.took_ms = get(head, "took_ms").and_then(Scalar::number);
     for (at, (line, part)) in (1_usize..).zip(parts) {
         if let Err(why) = take(&mut snapshot, part) {
             let place = if *line > 0 {
@@ -204,11 +249,11 @@ fn build(
 }
 
 /// Takes one part in.
-fn take(snapshot: &mut Snapshot, part: &Map<String, Value>) -> Result<(), String> {
-    let text = |key: &str| part.get(key).and_then(Value::as_str);
+fn take(snapshot: &mut Snapshot, part: &Members) -> Result<(), String> {
+    let text = |key: &str| get(part, key).and_then(Scalar::text);
     let number = |key: &str| {
-        part.get(key)
-            .and_then(Value::as_u64)
+        get(part, key)
+            .and_then(Scalar::number)
             .and_then(|n| u16::try_from(n).ok())
             .ok_or_else(|| format!("{key:?} is missing or no number up to 65535"))
     };
@@ -243,7 +288,7 @@ fn take(snapshot: &mut Snapshot, part: &Map<String, Value>) -> Result<(), String
         snapshot.failures.push(Failure { part, why });
         return Ok(());
     }
-    if part.contains_key("table") {
+    if get(part, "table").is_some() {
         let table = table("table")?;
         let start = number("start")?;
         let words = match (table.is_bits(), text("bits"), text("words")) {
@@ -273,13 +318,13 @@ fn take(snapshot: &mut Snapshot, part: &Map<String, Value>) -> Result<(), String
         snapshot.identity = Some(pdu);
         return Ok(());
     }
-    if part.contains_key("counter") {
+    if get(part, "counter").is_some() {
         snapshot
             .counters
             .insert(number("counter")?, number("value")?);
         return Ok(());
     }
-    if part.contains_key("file") {
+    if get(part, "file").is_some() {
         let words = words(text("words").ok_or("the words are missing")?)?;
         let start = number("start")?;
         let end = usize::from(start).saturating_add(words.len());

@@ -306,7 +306,7 @@ pub fn interlocks(model: Model, image: &Image) -> Vec<Statement> {
                 Some(false) => format!("{way} is not interlocked."),
                 None => format!(
                     "Whether {} is interlocked is not known.",
-                    way.to_lowercase()
+                    way.to_ascii_lowercase()
                 ),
             },
             holds: None,
