@@ -1,5 +1,6 @@
 //! The program's screens as HTML text. Pure, tested natively.
 
+pub mod counters;
 pub mod drawing;
 pub mod findings;
 pub mod head;

@@ -10,7 +10,7 @@ use shared::proto::{Block, TableName};
 
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::markup::Markup;
-use crate::network::markup::unit;
+use crate::network::markup::{counters, unit};
 use crate::network::state::net::{Net, Unit};
 use crate::network::state::unit::Judged;
 use crate::network::state::wish;
@@ -65,7 +65,7 @@ pub(super) fn UnitPage() -> impl IntoView {
         unit::bits(html, "Timers and analog channels", "timers", &view.timers);
         unit::bits(html, "User faults", "user-faults", &view.user_faults);
         unit::differences(html, of.device);
-        unit::counters(html, of, store.online.get(), store.now_us.get());
+        counters::counters(html, of, store.online.get(), store.now_us.get());
     });
     let reading = draw(|html, store, net, of, _| {
         unit::reading(html, of.info.unit, net.asked.as_ref(), store.online.get());
