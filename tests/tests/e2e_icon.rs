@@ -206,7 +206,7 @@ async fn strokes_and_trends_are_drawn_as_they_were_read() {
     let log = Log::read(3001, records).expect("a layout");
     let travel = log
         .get("travel_limit")
-        .and_then(|i| i.number())
+        .and_then(shared::icon3000::Item::number)
         .expect("a travel");
     let points = drawn(&page, "pst", "out").await;
     let at = usize::try_from(travel).expect("a place");
