@@ -268,7 +268,7 @@ async fn scan(count: u8, kind: Device, registers: u16, ends: Ends, passes: u64) 
         {
             best = best.min((took_us / 1000, expected_us / 1000));
         }
-        if best.0 <= best.1 + best.1 / 20 {
+        if best.0 <= best.1 + best.1 / 100 {
             break;
         }
     }

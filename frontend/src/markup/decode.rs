@@ -169,7 +169,7 @@ pub fn welcome(html: &mut Markup) {
     html.open("ul", &[("class", "sample-list")]);
     // A program decodes what it was made for.
     let own =
-        |s: &&Sample| !cfg!(feature = "hart") || s.device.is_some_and(|d| d.family().is_some());
+        |s: &&Sample| cfg!(feature = "maps") || s.device.is_some_and(|d| d.family().is_some());
     for sample in SAMPLES.iter().filter(own) {
         html.open("li", &[]).open(
             "button",
