@@ -345,9 +345,10 @@ async fn scan_times_over_ptys() {
                      {expected} | measured {took} ms",
                     kind.key()
                 );
-                // Other programs of this computer may hold up both ends; simulated time is strict.
+                // Both ends are held up by whatever else this computer does; simulated time is
+                // strict.
                 let bound = table.max(product);
-                assert!(took <= bound + bound / 4, "{took} > {bound}");
+                assert!(took <= bound + bound / 10, "{took} > {bound}");
             }
         }
     }

@@ -4,6 +4,7 @@
 mod common;
 mod networks;
 
+use backend::bus::query::Query;
 use backend::config::Config;
 use common::{Page, serve};
 use networks::{Ends, Setting, units};
@@ -178,6 +179,77 @@ async fn a_unit_is_read_once_between_two_polls() {
     }
 }
 
+/// Counters of function 08 (table 3.8): a request that the unit refuses raises that of exceptions by
+/// one, every request that of messages; sub-functions that change something are not sent.
+#[tokio::test]
+async fn counters_are_read_between_two_polls() {
+    let address = serve(&Config::simulated()).await;
+    let (mut page, _) = Page::greet(address).await;
+    let mut ask = async |ask: DdcAsk| {
+        page.say(&ToBackend::Ddc(ask)).await;
+        page.ddc(|news| match news {
+            DdcNews::Read {
+                outcome,
+                text,
+                request,
+                response,
+                unit,
+                ..
+            } => Some((outcome, text, request, response, unit)),
+            _ => None,
+        })
+        .await
+    };
+    let counter = |sub_function, bus: &str, unit| DdcAsk::Counter {
+        id: 1,
+        bus: bus.into(),
+        unit,
+        sub_function,
+    };
+    let mut value = async |sub: u16| {
+        let (outcome, text, request, response, unit) = ask(counter(sub, LOOP, 3)).await;
+        assert_eq!((outcome, text.as_str(), unit), (Outcome::Ok, "", 3));
+        assert_eq!(request, format!("08{sub:04X}0000"));
+        let value = response.strip_prefix(&request[..6]).expect("an echo");
+        assert_eq!(value.len(), 4, "{response}");
+        u16::from_str_radix(value, 16).unwrap()
+    };
+    let (messages, exceptions) = (value(11).await, value(13).await);
+    assert!(messages > 0, "polls are messages");
+    assert_eq!(value(13).await, exceptions, "nothing was refused");
+    let refused = DdcAsk::Read {
+        id: 2,
+        bus: LOOP.into(),
+        unit: 3,
+        block: holding(500, 1),
+    };
+    assert_eq!(ask(refused).await.3, "8302");
+    let mut value = async |sub: u16| {
+        let response = ask(counter(sub, LOOP, 3)).await.3;
+        u16::from_str_radix(&response[6..], 16).unwrap()
+    };
+    assert_eq!(value(13).await, exceptions + 1);
+    // The one above, and at least the five of this test since.
+    assert!(value(11).await >= messages + 5);
+    for (sub, bus, unit) in [
+        (0, LOOP, 3),
+        (1, LOOP, 3),
+        (4, LOOP, 3),
+        (10, LOOP, 3),
+        (11, LOOP, 200),
+        (11, "Simulated plant", 1),
+        (11, "nowhere", 1),
+    ] {
+        let (outcome, text, _, response, _) = ask(counter(sub, bus, unit)).await;
+        assert_eq!(
+            (outcome, response.as_str()),
+            (Outcome::Refused, ""),
+            "{sub}: {text}"
+        );
+        assert!(!text.is_empty());
+    }
+}
+
 /// The ordinary tabs of a device: what is watched is in the captures of its bus, without damage, and
 /// can be decoded, whichever port was used.
 #[tokio::test]
@@ -263,13 +335,20 @@ async fn only_reads_come_out_of_the_ports() {
         for block in [(0, 2), (8, 2), (0, 56), (111, 1)] {
             let _answered = network.read(device, block.0, block.1).await;
         }
+        for sub in [2, 11, 14] {
+            let report = network.handle().read(device, Query::Diagnostic(sub)).await;
+            assert_eq!(report.outcome, Outcome::Ok, "{}", report.text);
+        }
     }
     network.until_pass(6).await;
     let requests = network.requests();
     assert!(requests.len() > 25, "{}", requests.len());
     for request in requests {
         assert!(
-            matches!(request.pdu.as_slice(), [1..=4, _, _, _, _]),
+            matches!(
+                request.pdu.as_slice(),
+                [1..=4, _, _, _, _] | [8, 0, 2 | 11..=14, 0, 0]
+            ),
             "{request:?}"
         );
     }

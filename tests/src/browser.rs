@@ -15,7 +15,9 @@
 //! ```
 
 mod driver;
+mod hand;
 mod log;
+mod picture;
 
 pub use log::{ConsoleLine, leaves_loopback};
 
@@ -118,9 +120,21 @@ impl Page {
     ///
     /// If it stays false.
     pub async fn wait_until(&self, condition: &str) {
-        let end = tokio::time::Instant::now() + PATIENCE;
+        self.wait_within(condition, PATIENCE).await;
+    }
+
+    /// As [`Page::wait_until`], with more patience.
+    ///
+    /// # Panics
+    ///
+    /// If it stays false; the panic shows what a reader sees.
+    pub async fn wait_within(&self, condition: &str, limit: Duration) {
+        let end = tokio::time::Instant::now() + limit;
         while self.eval(&format!("return Boolean({condition})")).await != Value::Bool(true) {
-            assert!(tokio::time::Instant::now() < end, "never true: {condition}");
+            if tokio::time::Instant::now() >= end {
+                let seen = self.eval("return document.body.innerText").await;
+                panic!("never true: {condition}\n{seen}");
+            }
             tokio::time::sleep(Duration::from_millis(20)).await;
         }
     }

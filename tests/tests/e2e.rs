@@ -10,17 +10,6 @@ use tests::server::Server;
 /// Poll of unit 3 for position and torque, and the answer: 24.0 %, -12 %. CRCs by pymodbus.
 const EXCHANGE: &str = "03 03 0B BC 00 02 06 29\n03 03 04 00 F0 FF F4 99 B7";
 
-/// Types into the paste box as a person would paste.
-async fn paste(page: &Page, text: &str) {
-    page.wait_for("[data-testid=paste]").await;
-    page.eval(&format!(
-        "const box = document.querySelector('[data-testid=paste]');
-         box.value = {text:?};
-         box.dispatchEvent(new Event('input', {{ bubbles: true }}));"
-    ))
-    .await;
-}
-
 /// Moves the mouse onto the first element with this selector.
 async fn hover(page: &Page, css: &str) {
     let at = page
@@ -33,35 +22,13 @@ async fn hover(page: &Page, css: &str) {
     page.devtools("Input.dispatchMouseEvent", params).await;
 }
 
-async fn count(page: &Page, css: &str) -> u64 {
-    let found = page
-        .eval(&format!("return document.querySelectorAll({css:?}).length"))
-        .await;
-    found.as_u64().expect("a number")
-}
-
-/// Both sizes in both schemes, for people to look at.
-async fn look(page: &Page, name: &str) {
-    for (scheme, shade) in [(Scheme::Light, "light"), (Scheme::Dark, "dark")] {
-        for (width, height) in [(1440, 900), (390, 844)] {
-            page.show(width, height, scheme).await;
-            assert!(
-                page.screenshot(&format!("{name}-{width}-{shade}"))
-                    .await
-                    .is_file()
-            );
-        }
-    }
-    page.show(1440, 900, Scheme::Light).await;
-}
-
 /// Paste, list, tree, bytes: the whole thread of the decode page. Nothing leaves loopback.
 #[tokio::test]
 async fn pasted_bytes_become_a_tree() {
     let server = Server::start(&[]);
     let page = Page::open(&server.url("/#/decode")).await;
     page.show(1440, 900, Scheme::Light).await;
-    paste(&page, EXCHANGE).await;
+    page.paste(EXCHANGE).await;
     page.wait_until("document.querySelectorAll('[data-testid=frame-row]').length === 2")
         .await;
     page.eval("document.querySelectorAll('[data-testid=frame-row]')[1].click()")
@@ -105,7 +72,7 @@ async fn pasted_bytes_become_a_tree() {
             .map(b => b.dataset.offset).join() === '3,4'",
     )
     .await;
-    look(&page, "decode").await;
+    page.look("decode").await;
     page.assert_clean().await;
 }
 
@@ -114,7 +81,8 @@ async fn pasted_bytes_become_a_tree() {
 async fn bad_input_is_explained() {
     let server = Server::start(&[]);
     let page = Page::open(&server.url("/#/decode")).await;
-    paste(&page, &format!("{EXCHANGE} DE AD BE EF 03 03 00")).await;
+    page.paste(&format!("{EXCHANGE} DE AD BE EF 03 03 00"))
+        .await;
     page.wait_for("[data-testid=problem]").await;
     page.wait_until("document.querySelectorAll('[data-testid=frame-row]').length >= 3")
         .await;
@@ -127,7 +95,7 @@ async fn bad_input_is_explained() {
         "{said}"
     );
 
-    paste(&page, "no bytes in here").await;
+    page.paste("no bytes in here").await;
     page.wait_until("document.body.innerText.includes('not hexadecimal')")
         .await;
     page.assert_clean().await;
@@ -142,7 +110,7 @@ async fn decoding_goes_on_without_a_backend() {
     drop(server);
     let before = page.requests().await.len();
     assert!(before > 0, "the page was loaded");
-    paste(&page, EXCHANGE).await;
+    page.paste(EXCHANGE).await;
     page.wait_until("document.querySelectorAll('[data-testid=frame-row]').length === 2")
         .await;
     let asked = page.requests().await;
@@ -172,7 +140,7 @@ async fn a_second_program_comes_when_it_is_wanted() {
     page.wait_until("document.querySelector('[data-testid=conn-state]').innerText === 'Connected'")
         .await;
     assert_eq!(diagnostics(&page).await, [""; 0], "not before it is wanted");
-    look(&page, "welcome").await;
+    page.look("welcome").await;
     page.click("[data-testid=dop-link]").await;
     page.wait_until(OPEN).await;
     let asked = diagnostics(&page).await;
@@ -207,7 +175,7 @@ async fn a_program_that_does_not_come_is_tried_again() {
     drop(server);
     page.eval("location.hash = '#/dop'").await;
     page.wait_for("[data-testid=program-failed]").await;
-    look(&page, "program-failed").await;
+    page.look("program-failed").await;
     let _server = Server::start_at(&listen, &[]);
     page.click("[data-testid=program-retry]").await;
     page.wait_until(OPEN).await;
@@ -219,7 +187,7 @@ async fn the_single_file_is_whole() {
     let file = tests::target_dir().with_file_name("static/dist/valvescope.html");
     assert!(file.is_file(), "run `cargo xtask web` first");
     let page = Page::open(&format!("file://{}#/decode", file.display())).await;
-    paste(&page, EXCHANGE).await;
+    page.paste(EXCHANGE).await;
     page.wait_until("document.querySelectorAll('[data-testid=frame-row]').length === 2")
         .await;
     page.eval("location.hash = '#/dop'").await;
@@ -240,7 +208,7 @@ async fn the_live_overview_moves() {
     page.show(1440, 900, Scheme::Light).await;
     page.wait_until("document.querySelector('[data-testid=device-row]')?.innerText.includes('%')")
         .await;
-    look(&page, "devices").await;
+    page.look("devices").await;
     page.click("[data-testid=device-row] a, [data-testid=device-row]")
         .await;
     page.wait_until(
@@ -258,7 +226,7 @@ async fn the_live_overview_moves() {
         tokio::time::sleep(Duration::from_secs(1)).await;
     }
     assert_ne!(now, first, "the position has not moved for two minutes");
-    look(&page, "overview").await;
+    page.look("overview").await;
     page.assert_clean().await;
 }
 
@@ -293,7 +261,7 @@ async fn registers_are_searched_and_read() {
         "/\\d+\\.\\d/.test(document.querySelector(\"{row}\").innerText)"
     ))
     .await;
-    look(&page, "values").await;
+    page.look("values").await;
     page.assert_clean().await;
 }
 
@@ -370,7 +338,7 @@ async fn registers_are_sorted() {
     page.click("[data-testid=sort-value]").await;
     page.wait_until("/\\d/.test(document.querySelector('[data-testid=register-value]').innerText)")
         .await;
-    look(&page, "sorted").await;
+    page.look("sorted").await;
     page.assert_clean().await;
 }
 
@@ -386,7 +354,7 @@ async fn an_empty_list_and_a_copied_row() {
         said.contains("nothing like it") || said.contains("nothing+like+it"),
         "{said}"
     );
-    look(&page, "nothing-matches").await;
+    page.look("nothing-matches").await;
     page.click("[data-testid=widen]").await;
     page.wait_for("[data-testid=register-row]").await;
     page.wait_until("!document.querySelector('[data-testid=nothing]')")
@@ -458,7 +426,7 @@ async fn an_alarm_is_seen() {
         "document.querySelector('{row}')?.innerText.includes('Closed')"
     ))
     .await;
-    assert_eq!(count(&page, ".sign").await, 0, "nothing is wrong yet");
+    assert_eq!(page.count(".sign").await, 0, "nothing is wrong yet");
     let first = "document.querySelector('[data-testid=device-row]').dataset.tag";
     page.wait_until(&format!("{first} === 'XV-1'")).await;
 
@@ -472,13 +440,13 @@ async fn an_alarm_is_seen() {
     let words = page.text(row).await;
     assert!(words.contains("Hi-Hi Temperature"), "{words}");
     page.wait_until(&format!("{first} === 'XV-2'")).await;
-    look(&page, "alarm-list").await;
+    page.look("alarm-list").await;
     page.click(row).await;
     page.wait_for("[data-testid=condition][data-key=hi_hi_temperature] .sign-f svg")
         .await;
     page.wait_for("[data-testid=condition][data-key=hi_temperature] .sign svg")
         .await;
-    look(&page, "alarm-device").await;
+    page.look("alarm-device").await;
 
     device.set(3010, 0);
     device.set(3009, 0);
@@ -498,7 +466,7 @@ async fn long_lists_are_windowed() {
     let page = Page::open(&server.url("/#/device/XV-101/values")).await;
     page.show(1440, 900, Scheme::Light).await;
     page.wait_for("[data-testid=register-row]").await;
-    let rows = count(&page, "[data-testid=register-row]").await;
+    let rows = page.count("[data-testid=register-row]").await;
     assert!((5..120).contains(&rows), "{rows} rows in the page");
 }
 
@@ -547,7 +515,7 @@ async fn traffic_is_shown() {
     page.eval("document.querySelectorAll('[data-testid=frame-row]')[1].click()")
         .await;
     page.wait_for("[data-testid=field-row]").await;
-    look(&page, "traffic").await;
+    page.look("traffic").await;
     page.assert_clean().await;
 }
 

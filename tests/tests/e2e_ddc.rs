@@ -52,51 +52,9 @@ impl Drop for Network {
     }
 }
 
-/// Waits longer than the page's own patience: a break has its time, and passes take theirs.
-async fn until(page: &Page, condition: &str, seconds: u64) {
-    let end = tokio::time::Instant::now() + Duration::from_secs(seconds);
-    while page.eval(&format!("return Boolean({condition})")).await != Value::Bool(true) {
-        if tokio::time::Instant::now() >= end {
-            let seen = page.eval("return document.body.innerText").await;
-            panic!("never true: {condition}\n{seen}");
-        }
-        tokio::time::sleep(Duration::from_millis(50)).await;
-    }
-}
-
-/// Chooses in a list or types into a field.
-async fn enter(page: &Page, css: &str, value: &str) {
-    page.wait_for(css).await;
-    let script = format!(
-        "const e = document.querySelector({css:?});
-         e.value = {value:?};
-         e.dispatchEvent(new Event('input', {{ bubbles: true }}));
-         e.dispatchEvent(new Event('change', {{ bubbles: true }}));"
-    );
-    page.eval(&script).await;
-}
-
-async fn count(page: &Page, css: &str) -> u64 {
-    let script = format!("return document.querySelectorAll({css:?}).length");
-    page.eval(&script).await.as_u64().expect("a number")
-}
-
-/// Both sizes in both schemes, for people to look at.
-async fn look(page: &Page, name: &str) {
-    for (scheme, shade) in [(Scheme::Light, "light"), (Scheme::Dark, "dark")] {
-        for (width, height) in [(1440, 900), (390, 844)] {
-            page.show(width, height, scheme).await;
-            tokio::time::sleep(Duration::from_millis(250)).await;
-            page.screenshot(&format!("ddc-{name}-{width}-{shade}"))
-                .await;
-            // Nothing is wider than the window.
-            let wide = page
-                .eval("return document.documentElement.scrollWidth > window.innerWidth")
-                .await;
-            assert_eq!(wide, Value::Bool(false), "{name} at {width}");
-        }
-    }
-    page.show(1440, 900, Scheme::Light).await;
+/// A break has its time, and passes take theirs.
+const fn seconds(count: u64) -> Duration {
+    Duration::from_secs(count)
 }
 
 const FINDING: &str = "[data-testid=finding]";
@@ -114,18 +72,17 @@ async fn a_break_is_named_where_it_is() {
     let page = network.open("#/devices").await;
     page.click("[data-testid=nav-network]").await;
     let good = format!("document.querySelector('{FINDING}[data-key=no_fault][data-certain=true]')");
-    until(&page, &good, 20).await;
-    assert_eq!(count(&page, "[data-testid=node]").await, 6);
-    assert_eq!(count(&page, "[data-testid=break]").await, 0);
-    assert_eq!(count(&page, ".ring .sign-f").await, 0, "grey is normal");
+    page.wait_within(&good, seconds(20)).await;
+    assert_eq!(page.count("[data-testid=node]").await, 6);
+    assert_eq!(page.count("[data-testid=break]").await, 0);
+    assert_eq!(page.count(".ring .sign-f").await, 0, "grey is normal");
     page.wait_until("document.querySelectorAll('[data-testid=unit-row]').length === 6")
         .await;
     // The poll moves on, and passes are measured beside what is expected.
     page.wait_for("[data-testid=poll]").await;
-    until(
-        &page,
+    page.wait_within(
         "/\\d\\.\\d\\d s/.test(document.querySelector('[data-testid=passes]').innerText)",
-        10,
+        seconds(10),
     )
     .await;
     // Arrow keys walk along the cable; the drawing tells where they are.
@@ -144,10 +101,10 @@ async fn a_break_is_named_where_it_is() {
               .getAttribute('aria-activedescendant') === 'node-1'",
     )
     .await;
-    look(&page, "good").await;
+    page.look("ddc-good").await;
 
     let broken = format!("document.querySelector('{FINDING}[data-key=break][data-certain=true]')");
-    until(&page, &broken, 45).await;
+    page.wait_within(&broken, seconds(45)).await;
     let words = page.text(&format!("{FINDING}[data-key=break]")).await;
     assert!(words.contains("between unit 3 and unit 4"), "{words}");
     page.wait_for("[data-testid=break][data-kind=certain][data-from='3'][data-to='3']")
@@ -162,7 +119,7 @@ async fn a_break_is_named_where_it_is() {
         )
         .await;
     assert_eq!(faults, Value::String("01 01 01 10 10 10".into()));
-    look(&page, "break").await;
+    page.look("ddc-break").await;
     page.show(390, 844, Scheme::Light).await;
     // As a list, the break stands between the third and the fourth unit.
     page.wait_until(
@@ -182,7 +139,7 @@ async fn a_unit_says_what_it_does() {
     let network = Network::start("ddc-unit", "loop", 6, &["off-3", "phase-6", "local-4"]);
     let page = network.open("#/network/Loop%201").await;
     let off = format!("document.querySelector('{FINDING}[data-key=off_line][data-certain=true]')");
-    until(&page, &off, 30).await;
+    page.wait_within(&off, seconds(30)).await;
     let words = page.text(FINDING).await;
     assert!(words.contains("Unit 3 is off-line"), "{words}");
     // The worst first.
@@ -191,7 +148,7 @@ async fn a_unit_says_what_it_does() {
     page.click("[data-testid=sort-unit]").await;
     page.wait_until("document.querySelector('[data-testid=unit-row]')?.dataset.unit === '1'")
         .await;
-    enter(&page, "[data-testid=unit-search]", "mov-006").await;
+    page.enter("[data-testid=unit-search]", "mov-006").await;
     page.wait_until("document.querySelectorAll('[data-testid=unit-row]').length === 1")
         .await;
     page.click("[data-testid=unit-row][data-unit='6']").await;
@@ -219,24 +176,48 @@ async fn a_unit_says_what_it_does() {
     // Could it be opened? Yes. Closed? It is closed already.
     page.wait_until("document.querySelector('[data-testid=verdict]')?.dataset.verdict === 'pass'")
         .await;
-    enter(&page, "[data-testid=wish]", "close").await;
+    page.enter("[data-testid=wish]", "close").await;
     page.wait_until("document.querySelector('[data-testid=verdict]').dataset.verdict === 'fail'")
         .await;
     page.wait_for("[data-testid=check-item][data-key=position][data-verdict=fail]")
         .await;
     // All registers, read between two polls.
     page.click("[data-testid=read-registers]").await;
-    until(
-        &page,
+    page.wait_within(
         "document.querySelector('[data-testid=read-state]').innerText.includes('read: 1 to 56')",
-        15,
+        seconds(15),
     )
     .await;
     page.wait_until("document.querySelectorAll('[data-testid=registers] tbody tr').length === 56")
         .await;
-    look(&page, "unit").await;
+    // Counters of function 08, read when they are asked for: every poll is a message (table 3.8).
+    let counter = |sub: u8| {
+        format!(
+            "document.querySelector(\"[data-testid=counter][data-sub='{sub}'] td.num:not(.quiet)\")?.innerText"
+        )
+    };
+    page.wait_until(
+        "document.querySelector('[data-testid=counters]').innerText.includes('not read')",
+    )
+    .await;
+    page.click("[data-testid=read-counters]").await;
+    for sub in [2, 11, 12, 13, 14] {
+        page.wait_within(&format!("/\\d/.test({})", counter(sub)), seconds(15))
+            .await;
+    }
+    let messages = page.eval(&format!("return Number({})", counter(11))).await;
+    assert!(messages.as_f64() > Some(0.0), "{messages}");
+    page.wait_until("!document.querySelector('[data-testid=read-counters]').disabled")
+        .await;
+    page.click("[data-testid=read-counters]").await;
+    page.wait_within(
+        &format!("Number({}) > {messages}", counter(11)),
+        seconds(15),
+    )
+    .await;
+    page.look("ddc-unit").await;
     // The scale is remembered.
-    enter(&page, "[data-testid=scaling]", "0-4095").await;
+    page.enter("[data-testid=scaling]", "0-4095").await;
     page.wait_until("document.querySelector('[data-testid=unit-position]').innerText === '0.0 %'")
         .await;
     page.client.refresh().await.expect("the page loads again");
@@ -274,14 +255,14 @@ async fn a_tag_list_goes_round() {
                 80-MOV-4141,\"Feed, left\",1,,,\n\
                 80-POS-4141,Position feedback,1,40008,,0-255\n\
                 80-MOV-4142,Feed right,777,,,\n";
-    enter(&page, "[data-testid=tags-paste]", list).await;
+    page.enter("[data-testid=tags-paste]", list).await;
     page.wait_for("[data-testid=tag-problem][data-line='4'][data-column='24']")
         .await;
     let row = page.text("[data-testid=tag-row][data-unit='1']").await;
     for part in ["80-MOV-4141", "Feed, left", "0-255", "80-POS-4141", "40008"] {
         assert!(row.contains(part), "{part}: {row}");
     }
-    look(&page, "tags").await;
+    page.look("ddc-tags").await;
     // Catch the file that is saved.
     page.eval(
         "window.saved = '';
@@ -303,12 +284,12 @@ async fn a_tag_list_goes_round() {
         "document.querySelector(\"[data-testid=tag-row][data-unit='1']\").innerText.includes('MOV-001')",
     )
     .await;
-    enter(&page, "[data-testid=tags-paste]", &saved).await;
+    page.enter("[data-testid=tags-paste]", &saved).await;
     page.wait_until(
         "document.querySelector(\"[data-testid=tag-row][data-unit='1']\").innerText.includes('80-MOV-4141')",
     )
     .await;
-    assert_eq!(count(&page, "[data-testid=tag-problem]").await, 0);
+    assert_eq!(page.count("[data-testid=tag-problem]").await, 0);
     page.eval("window.saved = ''").await;
     page.click("[data-testid=export-tags]").await;
     page.wait_until("window.saved.length > 0").await;
@@ -340,12 +321,12 @@ async fn a_pattern_is_worked_out_by_hand() {
         ("6", "off_line"),
         ("7", "beyond"),
     ] {
-        enter(&page, "[data-testid=typed-example]", example).await;
+        page.enter("[data-testid=typed-example]", example).await;
         page.wait_for(&format!("{FINDING}[data-key={key}]")).await;
     }
-    enter(&page, "[data-testid=typed-example]", "3").await;
+    page.enter("[data-testid=typed-example]", "3").await;
     page.wait_for("[data-testid=break][data-from='3']").await;
-    look(&page, "typed").await;
+    page.look("ddc-typed").await;
     // The break moves behind unit 2 when unit 3 turns round.
     page.click("[data-testid=typed-bit][data-at='2'][data-port='0']")
         .await;
@@ -353,26 +334,28 @@ async fn a_pattern_is_worked_out_by_hand() {
         .await;
     page.wait_for("[data-testid=break][data-from='2'][data-kind=certain]")
         .await;
-    enter(&page, "[data-testid=typed-paste]", "7 0 1\n9 1 1\n3 1 0\n").await;
+    page.enter("[data-testid=typed-paste]", "7 0 1\n9 1 1\n3 1 0\n")
+        .await;
     page.wait_for(&format!(
         "{FINDING}[data-key=break_among][data-certain=false]"
     ))
     .await;
     let why = page.text(FINDING).await;
     assert!(why.contains("between unit 7 and unit 3"), "{why}");
-    enter(&page, "[data-testid=typed-paste]", "7 0 1\n9 x y\n").await;
+    page.enter("[data-testid=typed-paste]", "7 0 1\n9 x y\n")
+        .await;
     let problem = page.text("[data-testid=typed-problem]").await;
     assert!(problem.contains("Line 2"), "{problem}");
 
     page.click("[data-testid=net-tab][data-tab=scan]").await;
     page.wait_until("document.querySelector('[data-testid=scan-time]')?.innerText === '1.42 s'")
         .await;
-    enter(&page, "[data-testid=scan-units]", "250").await;
-    enter(&page, "[data-testid=scan-turn]", "30").await;
+    page.enter("[data-testid=scan-units]", "250").await;
+    page.enter("[data-testid=scan-turn]", "30").await;
     // 250 times 50 and 30 ms.
     page.wait_until("document.querySelector('[data-testid=scan-time]').innerText === '20.00 s'")
         .await;
-    look(&page, "scan").await;
+    page.look("ddc-scan").await;
     page.assert_clean().await;
 }
 
@@ -383,14 +366,13 @@ async fn as_many_units_as_there_can_be() {
     let page = network.open("#/network/Loop%201").await;
     page.wait_until("document.querySelectorAll('[data-testid=node]').length === 250")
         .await;
-    until(
-        &page,
+    page.wait_within(
         "document.querySelectorAll('.ring .node:not(.unknown)').length >= 20",
-        20,
+        seconds(20),
     )
     .await;
-    let drawn = count(&page, "[data-testid=unit-row]").await;
+    let drawn = page.count("[data-testid=unit-row]").await;
     assert!((5..60).contains(&drawn), "only what is in view: {drawn}");
-    look(&page, "many").await;
+    page.look("ddc-many").await;
     page.assert_clean().await;
 }

@@ -26,89 +26,6 @@ fn s32(words: &[u16], at: usize) -> f64 {
     f64::from(raw.cast_signed())
 }
 
-/// Reads what a series shows: pairs of x and y in the units of the axes. The y axis is told by the
-/// texts of its ticks, the x axis by its ticks if they are numbers, else by its range.
-async fn drawn(page: &Page, chart: &str, series: &str) -> Vec<(f64, f64)> {
-    let script = format!(
-        "const svg = document.querySelector('[data-chart=\"{chart}\"] [data-testid=chart-svg]');
-         const axis = (name, place, shift) => {{
-           const ticks = [...svg.querySelectorAll(`text[data-tick=${{name}}]`)].map(t =>
-             [Number(t.getAttribute(place)) - shift,
-              Number(t.textContent.replaceAll('\\u2009', '').replace('\\u2212', '-'))]);
-           const [a, b] = [ticks[0], ticks[ticks.length - 1]];
-           return p => a[1] + (p - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
-         }};
-         const [left, top, width] = svg.dataset.plot.split(' ').map(Number);
-         const [low, high] = svg.dataset.x.split(' ').map(Number);
-         const y = axis('y', 'y', 4);
-         const x = p => low + (p - left) / width * (high - low);
-         const path = svg.querySelector('path[data-series=\"{series}\"]');
-         if (path) {{
-           const points = [];
-           for (const [, x1, y1, x2] of path.getAttribute('d')
-                  .matchAll(/[ML](-?[\\d.]+) (-?[\\d.]+)(?:H(-?[\\d.]+))?/g)) {{
-             const middle = x2 === undefined ? Number(x1) : (Number(x1) + Number(x2)) / 2;
-             points.push([x(middle), y(Number(y1))]);
-           }}
-           return points;
-         }}
-         return [...svg.querySelectorAll('rect[data-series=\"{series}\"]')].map(r => {{
-           const n = name => Number(r.getAttribute(name));
-           const ends = [y(n('y')), y(n('y') + n('height'))];
-           // A bar stands on zero or hangs from it.
-           const value = Math.abs(ends[0]) > Math.abs(ends[1]) ? ends[0] : ends[1];
-           return [x(n('x') + n('width') / 2), value];
-         }});"
-    );
-    let found = page.eval(&script).await;
-    let pair = |p: &Value| Some((p.get(0)?.as_f64()?, p.get(1)?.as_f64()?));
-    let points = found.as_array().expect("points").iter();
-    points.map(|p| pair(p).expect("two numbers")).collect()
-}
-
-/// Holds that a series shows these values, within what a pixel can say.
-async fn shows(page: &Page, chart: &str, series: &str, wanted: &[f64]) {
-    let points = drawn(page, chart, series).await;
-    let span = wanted.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
-    // A bar is seen however small it is, so it may be a pixel and a half too long.
-    let bars = count(page, &format!("[data-chart={chart}] rect[data-series]")).await > 0;
-    let within = span * if bars { 0.008 } else { 0.004 } + 0.05;
-    assert_eq!(points.len(), wanted.len(), "{chart} {series}: {points:?}");
-    for ((_, y), wanted) in points.iter().zip(wanted) {
-        assert!(
-            (y - wanted).abs() < within,
-            "{chart} {series}: {y} instead of {wanted}"
-        );
-    }
-}
-
-async fn count(page: &Page, css: &str) -> u64 {
-    let script = format!("return document.querySelectorAll({css:?}).length");
-    page.eval(&script).await.as_u64().expect("a number")
-}
-
-/// Waits until an expression with `$` for the first element of a selector is true.
-async fn until(page: &Page, css: &str, test: &str) {
-    let test = test.replace('$', "e");
-    page.wait_until(&format!(
-        "(e => e && ({test}))(document.querySelector({css:?}))"
-    ))
-    .await;
-}
-
-/// Both sizes in both schemes, for people to look at.
-async fn look(page: &Page, name: &str) {
-    for (scheme, shade) in [(Scheme::Light, "light"), (Scheme::Dark, "dark")] {
-        for (width, height) in [(1440, 900), (390, 844)] {
-            page.show(width, height, scheme).await;
-            tokio::time::sleep(Duration::from_millis(250)).await;
-            page.screenshot(&format!("dop-{name}-{width}-{shade}"))
-                .await;
-        }
-    }
-    page.show(1440, 900, Scheme::Light).await;
-}
-
 /// Opens a sample by its address.
 async fn open(server: &Server, key: &str) -> Page {
     let page = Page::open(&server.url(&format!("/#/dop?sample={key}"))).await;
@@ -137,9 +54,9 @@ async fn a_torque_profile_is_drawn_as_it_was_read() {
         ("average", 200),
         ("long-term", 300),
     ] {
-        shows(&page, "dop-0191", series, &part(at)).await;
+        page.assert_shows("dop-0191", series, &part(at)).await;
     }
-    let positions = drawn(&page, "dop-0191", "average").await;
+    let positions = page.drawn("dop-0191", "average").await;
     assert!((positions[0].0 - 0.5).abs() < 0.2 && (positions[99].0 - 99.5).abs() < 0.2);
 
     // The keyboard reads values where they stand.
@@ -152,8 +69,7 @@ async fn a_torque_profile_is_drawn_as_it_was_read() {
         .await;
     }
     let average = format!("{}.{}", words[202] / 10, words[202] % 10);
-    until(
-        &page,
+    page.until(
         "[data-testid=chart-readout]",
         &format!("$.innerText.includes('2 to 3 %') && $.innerText.includes('{average}')"),
     )
@@ -174,17 +90,15 @@ async fn a_torque_profile_is_drawn_as_it_was_read() {
         )
     };
     page.eval(&drag(0.25, 0.5)).await;
-    until(&page, "[data-testid=chart-svg]", "Math.abs($.dataset.x.split(' ')[0] - 25) < 1 && Math.abs($.dataset.x.split(' ')[1] - 50) < 1").await;
+    page.until("[data-testid=chart-svg]", "Math.abs($.dataset.x.split(' ')[0] - 25) < 1 && Math.abs($.dataset.x.split(' ')[1] - 50) < 1").await;
     page.screenshot("dop-torque-part").await;
     page.eval("document.querySelector('.chart-plot').dispatchEvent(new MouseEvent('dblclick', { bubbles: true }))").await;
-    until(&page, "[data-testid=chart-svg]", "$.dataset.x === '0 100'").await;
+    page.until("[data-testid=chart-svg]", "$.dataset.x === '0 100'")
+        .await;
 
     page.click("[data-testid=chart-data]").await;
     page.wait_for("[data-testid=chart-table]").await;
-    assert_eq!(
-        count(&page, "[data-testid=chart-table] tbody tr").await,
-        100
-    );
+    assert_eq!(page.count("[data-testid=chart-table] tbody tr").await, 100);
     page.click("[data-testid=chart-data]").await;
     for form in ["svg", "png", "csv"] {
         page.click(&format!("[data-testid=chart-save-{form}]"))
@@ -195,7 +109,7 @@ async fn a_torque_profile_is_drawn_as_it_was_read() {
         !page.text(".chart-head").await.contains("could not"),
         "the PNG was painted"
     );
-    look(&page, "torque").await;
+    page.look("dop-torque").await;
     page.assert_clean().await;
 }
 
@@ -213,10 +127,12 @@ async fn a_trend_runs_from_start_to_end() {
             .map(|i| s32(&words, at + 2 * i) / 10.0)
             .collect()
     };
-    shows(&page, "dop-225c", "max", &oldest_first(1)).await;
-    shows(&page, "dop-225c", "min", &oldest_first(25)).await;
-    shows(&page, "dop-225c", "average", &oldest_first(49)).await;
-    let points = drawn(&page, "dop-225c", "average").await;
+    page.assert_shows("dop-225c", "max", &oldest_first(1)).await;
+    page.assert_shows("dop-225c", "min", &oldest_first(25))
+        .await;
+    page.assert_shows("dop-225c", "average", &oldest_first(49))
+        .await;
+    let points = page.drawn("dop-225c", "average").await;
     // 2026-02-20 and 2026-11-20; a ninth of the time lies between points.
     let (start, end) = (1_771_545_600.0, 1_795_132_800.0);
     let step = (end - start) / 9.0;
@@ -228,7 +144,7 @@ async fn a_trend_runs_from_start_to_end() {
     let said = page.text("[data-testid=object-view]").await;
     assert!(said.contains("9 of at most 12 points are valid"), "{said}");
     assert!(page.text("[data-testid=assumptions]").await.contains("°C"));
-    look(&page, "trend").await;
+    page.look("dop-trend").await;
     page.assert_clean().await;
 }
 
@@ -241,28 +157,25 @@ async fn bars_are_as_high_as_their_bins() {
         .await;
     let words = sample("vibration");
     let seconds: Vec<f64> = (0..15).map(|i| s32(&words, 1 + 2 * i)).collect();
-    shows(&page, "dop-0002", "amount", &seconds).await;
-    let bars = drawn(&page, "dop-0002", "amount").await;
+    page.assert_shows("dop-0002", "amount", &seconds).await;
+    let bars = page.drawn("dop-0002", "amount").await;
     // The last narrow bin is 3.6 to 4.0 G, the last wide one 16.8 to 20 G.
     assert!(
         (bars[9].0 - 3.8).abs() < 0.05 && (bars[14].0 - 18.4).abs() < 0.1,
         "{bars:?}"
     );
-    look(&page, "histogram").await;
+    page.look("dop-histogram").await;
 
     page.eval("location.hash = '#/dop?sample=axes'").await;
     page.wait_for("[data-chart=dop-0005-level] rect[data-series]")
         .await;
-    shows(&page, "dop-0005-level", "rms", &[112.0, 87.0, 245.0]).await;
-    shows(&page, "dop-0005-level", "peak", &[318.0, 266.0, -722.0]).await;
-    shows(
-        &page,
-        "dop-0005-spectrum",
-        "frequency",
-        &[24.7, 50.2, 119.6],
-    )
-    .await;
-    look(&page, "axes").await;
+    page.assert_shows("dop-0005-level", "rms", &[112.0, 87.0, 245.0])
+        .await;
+    page.assert_shows("dop-0005-level", "peak", &[318.0, 266.0, -722.0])
+        .await;
+    page.assert_shows("dop-0005-spectrum", "frequency", &[24.7, 50.2, 119.6])
+        .await;
+    page.look("dop-axes").await;
     page.assert_clean().await;
 }
 
@@ -273,7 +186,7 @@ async fn registers_find_their_object() {
     let page = Page::open(&server.url("/#/dop")).await;
     page.show(1440, 900, Scheme::Light).await;
     page.wait_for("[data-testid=dop-welcome]").await;
-    look(&page, "welcome").await;
+    page.look("dop-welcome").await;
     let text: String = sample("pst").iter().map(|w| format!("{w:04X} ")).collect();
     page.eval(&format!(
         "const box = document.querySelector('[data-testid=dop-paste]');
@@ -282,18 +195,17 @@ async fn registers_find_their_object() {
     ))
     .await;
     page.wait_for("[data-testid=dop-fit]").await;
-    assert_eq!(count(&page, "[data-testid=dop-fit]").await, 2);
+    assert_eq!(page.count("[data-testid=dop-fit]").await, 2);
     let cards = page.text(".object-values").await;
     for words in ["41", "2026-11-03 06:00:12 UTC", "ago"] {
         assert!(cards.contains(words), "{words}: {cards}");
     }
     assert!(cards.to_lowercase().contains("valve jam"), "{cards}");
-    look(&page, "cards").await;
+    page.look("dop-cards").await;
     // Another candidate, by a click.
     page.click("[data-testid=dop-fit][aria-pressed=false]")
         .await;
-    until(
-        &page,
+    page.until(
         "[data-testid=object-view]",
         "$.dataset.request === '0x00CF'",
     )
@@ -301,15 +213,13 @@ async fn registers_find_their_object() {
 
     // A register lights its field.
     page.eval("location.hash = '#/dop?sample=pst'").await;
-    until(
-        &page,
+    page.until(
         "[data-testid=object-view]",
         "$.dataset.request === '0x00D1'",
     )
     .await;
     page.click("[data-testid=register][data-offset='24']").await;
-    until(
-        &page,
+    page.until(
         "[data-testid=field-row].selected",
         "$.dataset.path.includes('open_reason')",
     )
@@ -322,13 +232,13 @@ async fn registers_find_their_object() {
 
     page.eval("location.hash = '#/dop?sample=events'").await;
     page.wait_for("[data-testid=log-row][data-id='1205']").await;
-    assert_eq!(count(&page, "[data-testid=log-row]").await, 6);
+    assert_eq!(page.count("[data-testid=log-row]").await, 6);
     let failure = page.text("[data-testid=log-row][data-id='1205']").await;
     assert!(
         failure.contains("Failure") && failure.contains("Open overtorque"),
         "{failure}"
     );
-    look(&page, "events").await;
+    page.look("dop-events").await;
     page.assert_clean().await;
 }
 
@@ -350,7 +260,7 @@ async fn a_capture_becomes_reads() {
     page.click("[data-testid=found-read][data-index='1']").await;
     page.wait_for("[data-chart=dop-025c] [data-testid=chart-svg]")
         .await;
-    look(&page, "session").await;
+    page.look("dop-session").await;
     page.assert_clean().await;
 }
 
@@ -381,26 +291,21 @@ async fn a_profile_is_edited() {
         .await;
     page.eval(&set("profile-temperature", "degF", "change"))
         .await;
-    until(
-        &page,
+    page.until(
         "[data-testid=profile-text]",
         "$.value.includes('\"request\": 500') && $.value.includes('degF')",
     )
     .await;
-    assert_eq!(count(&page, "[data-testid=profile-problem]").await, 0);
+    assert_eq!(page.count("[data-testid=profile-problem]").await, 0);
     page.click("[data-testid=add-indicators]").await;
     page.wait_for("[data-testid=bit-row]").await;
-    look(&page, "profile").await;
+    page.look("dop-profile").await;
     // The setting holds at once, and is no longer assumed.
     page.eval("location.hash = '#/dop?sample=temperature'")
         .await;
     page.wait_for("[data-chart=dop-225c]").await;
-    until(
-        &page,
-        "[data-chart=dop-225c]",
-        "$.textContent.includes('°F')",
-    )
-    .await;
+    page.until("[data-chart=dop-225c]", "$.textContent.includes('°F')")
+        .await;
     assert!(!page.text("[data-testid=assumptions]").await.contains("°C"));
     page.assert_clean().await;
 }
@@ -424,8 +329,7 @@ async fn the_overview_of_a_unit() {
     page.show(1440, 900, Scheme::Light).await;
     page.wait_for("[data-testid=indicators] [data-testid=active-bit] .sign")
         .await;
-    until(
-        &page,
+    page.until(
         "[data-testid=panel][data-object='1006']",
         "$.innerText.includes('MX-301')",
     )
@@ -435,7 +339,7 @@ async fn the_overview_of_a_unit() {
         .await;
     page.wait_for("[data-testid=warnings] [data-testid=active-bit]")
         .await;
-    look(&page, "overview").await;
+    page.look("dop-overview").await;
     // An indicator leads to the object that says more, which is read when it is opened.
     page.click("[data-testid=explained]").await;
     page.wait_for("[data-testid=object-view] [data-testid=card-line]")
@@ -468,15 +372,14 @@ async fn objects_are_read_and_compared() {
             .iter()
             .map(|w| f64::from(*w) / 10.0)
             .collect();
-        shows(&page, "dop-0191", series, &wanted).await;
+        page.assert_shows("dop-0191", series, &wanted).await;
     }
     // Its reference lies over it, dashed.
     page.eval(
         "document.querySelector(\"[data-testid=object-option][data-request='0x1191']\").click()",
     )
     .await;
-    until(
-        &page,
+    page.until(
         "[data-testid=object-view]",
         "$.dataset.request === '0x1191'",
     )
@@ -488,24 +391,17 @@ async fn objects_are_read_and_compared() {
         .iter()
         .map(|w| f64::from(*w) / 10.0)
         .collect();
-    shows(&page, "dop-strokes-avg", "option-1", &average).await;
+    page.assert_shows("dop-strokes-avg", "option-1", &average)
+        .await;
 
     // All of them, cancelled and begun anew.
     page.click("[data-testid=read-all-objects]").await;
-    until(
-        &page,
-        "[data-testid=dop-job]",
-        "/\\d+ of 55/.test($.innerText)",
-    )
-    .await;
+    page.until("[data-testid=dop-job]", "/\\d+ of 55/.test($.innerText)")
+        .await;
     page.screenshot("dop-reading").await;
     page.click("[data-testid=cancel-objects]").await;
-    until(
-        &page,
-        "[data-testid=dop-job]",
-        "$.innerText.includes('Cancelled')",
-    )
-    .await;
+    page.until("[data-testid=dop-job]", "$.innerText.includes('Cancelled')")
+        .await;
 
     // A trend of a live unit, from its start to its end.
     page.eval("location.hash = '#/device/MX-301/objects?object=1&option=1'")
@@ -515,7 +411,8 @@ async fn objects_are_read_and_compared() {
     let words = registers(&page).await;
     let points = usize::from(words[0].min(30));
     let oldest_first: Vec<f64> = (0..points).rev().map(|i| s32(&words, 61 + 2 * i)).collect();
-    shows(&page, "dop-1001", "average", &oldest_first).await;
+    page.assert_shows("dop-1001", "average", &oldest_first)
+        .await;
 
     // Kept, read again, compared.
     page.eval("location.hash = '#/device/MX-301/objects?object=1007&option=0'")
@@ -529,17 +426,17 @@ async fn objects_are_read_and_compared() {
     page.wait_for("[data-testid=difference]").await;
     let change = page.text("[data-testid=differences]").await;
     assert!(change.contains("Date and time"), "{change}");
-    look(&page, "compared").await;
+    page.look("dop-compared").await;
     page.eval("location.hash = '#/device/MX-301/objects?object=401&option=0'")
         .await;
     page.wait_for("[data-chart=dop-0191-compared] path[data-series=earlier-average].dashed")
         .await;
-    look(&page, "objects").await;
+    page.look("dop-objects").await;
     page.eval("location.hash = '#/device/MX-301/settings'")
         .await;
     page.wait_for("[data-testid=setting][data-key='registers.request']")
         .await;
-    look(&page, "settings").await;
+    page.look("dop-settings").await;
     page.assert_clean().await;
 }
 
@@ -549,24 +446,23 @@ async fn logs_are_read_to_their_end() {
     let server = Server::start(&[]);
     let page = Page::open(&server.url("/#/device/MX-301/logs")).await;
     page.show(1440, 900, Scheme::Light).await;
-    until(&page, "[data-testid=log-newest]", "!$.disabled").await;
+    page.until("[data-testid=log-newest]", "!$.disabled").await;
     page.click("[data-testid=log-newest]").await;
     page.wait_for("[data-testid=log-row]").await;
     page.click("[data-testid=log-cancel]").await;
-    until(&page, "[data-testid=log-resume]", "!$.disabled").await;
+    page.until("[data-testid=log-resume]", "!$.disabled").await;
     let before = page.text("[data-testid=log-status] b").await;
     page.click("[data-testid=log-resume]").await;
     // Two dozen pages, half a second each.
     tokio::time::sleep(Duration::from_secs(10)).await;
-    until(
-        &page,
+    page.until(
         "[data-testid=log-status]",
         "$.innerText.includes('end of the log')",
     )
     .await;
     let after = page.text("[data-testid=log-status] b").await;
     assert_ne!(before, after, "more came after going on");
-    let rows = count(&page, "[data-testid=log-row]").await;
+    let rows = page.count("[data-testid=log-row]").await;
     assert!((8..80).contains(&rows), "{rows} rows in the page");
     page.eval(
         "const list = document.querySelector('[data-testid=log-category]');
@@ -574,18 +470,14 @@ async fn logs_are_read_to_their_end() {
          list.dispatchEvent(new Event('change', { bubbles: true }));",
     )
     .await;
-    until(
-        &page,
-        "[data-testid=log-status]",
-        "$.innerText.includes('shown')",
-    )
-    .await;
-    until(&page, "[data-testid=log-list]", "[...$.querySelectorAll('[data-testid=log-row]')].every(r => r.innerText.includes('Failure') && r.querySelector('.sign-f'))").await;
-    look(&page, "logs").await;
+    page.until("[data-testid=log-status]", "$.innerText.includes('shown')")
+        .await;
+    page.until("[data-testid=log-list]", "[...$.querySelectorAll('[data-testid=log-row]')].every(r => r.innerText.includes('Failure') && r.querySelector('.sign-f'))").await;
+    page.look("dop-logs").await;
     page.click("[data-testid=log-1203]").await;
-    until(&page, "[data-testid=log-oldest]", "!$.disabled").await;
+    page.until("[data-testid=log-oldest]", "!$.disabled").await;
     page.click("[data-testid=log-oldest]").await;
     page.wait_for("[data-testid=log-row] .log-number").await;
-    look(&page, "movements").await;
+    page.look("dop-movements").await;
     page.assert_clean().await;
 }

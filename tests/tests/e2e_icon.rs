@@ -7,16 +7,25 @@ mod live;
 use std::time::Duration;
 
 use serde_json::Value;
+use shared::address::{Address, Table};
 use shared::capture::Micros;
 use shared::icon3000::collect::Answer;
 use shared::icon3000::{Collector, Log, Snapshot};
 use shared::map::row::Model;
-use shared::sim::{Icon3000, Programme};
+use shared::sim::{Fault, Icon3000, Programme};
 use tests::browser::{Page, Scheme};
 
 /// A simulated actuator, read whole: nothing of the page or the bridge takes part.
 fn device(model: Model) -> Snapshot {
+    faulty(model, &[])
+}
+
+/// The same with faults in it.
+fn faulty(model: Model, faults: &[Fault]) -> Snapshot {
     let mut device = Icon3000::new(model, "XV-101", Programme::Strokes);
+    for fault in faults {
+        device.set_fault(*fault, true);
+    }
     // Long enough for a stroke.
     for second in 0..120_u64 {
         device.advance(Micros::new(second * 1_000_000), 1_795_651_200 + second);
@@ -35,19 +44,8 @@ fn device(model: Model) -> Snapshot {
     collector.finish()
 }
 
-/// Opens a snapshot as if its file had been chosen.
-async fn open(page: &Page, name: &str, text: &str) {
-    page.wait_for("[data-testid=snapshot-file]").await;
-    let text = serde_json::to_string(text).expect("a text");
-    page.eval(&format!(
-        "const files = new DataTransfer();
-         files.items.add(new File([{text}], {name:?}));
-         const input = document.querySelector('[data-testid=snapshot-file]');
-         input.files = files.files;
-         input.dispatchEvent(new Event('change', {{ bubbles: true }}));"
-    ))
-    .await;
-}
+/// The field that opens a snapshot.
+const FILE: &str = "[data-testid=snapshot-file]";
 
 /// The page as a single file from a disk: no bridge takes part.
 async fn single_file() -> Page {
@@ -60,9 +58,14 @@ async fn single_file() -> Page {
 
 /// A page with the snapshot of a simulated ICON3000v2 open on one of its tabs.
 async fn opened(tab: &str) -> (Page, Snapshot) {
-    let snapshot = device(Model::Icon3000v2);
+    opened_with(tab, device(Model::Icon3000v2)).await
+}
+
+/// A page with this snapshot open on one of its tabs.
+async fn opened_with(tab: &str, snapshot: Snapshot) -> (Page, Snapshot) {
     let page = single_file().await;
-    open(&page, "xv-101.json", &snapshot.to_text()).await;
+    page.open_file(FILE, "xv-101.json", &snapshot.to_text())
+        .await;
     page.wait_for("[data-testid=snapshot]").await;
     go(&page, tab).await;
     (page, snapshot)
@@ -79,87 +82,6 @@ async fn go(page: &Page, tab: &str) {
     page.wait_for(&format!("[data-testid=page-{tab}]")).await;
 }
 
-async fn count(page: &Page, css: &str) -> u64 {
-    let script = format!("return document.querySelectorAll({css:?}).length");
-    page.eval(&script).await.as_u64().expect("a number")
-}
-
-/// Waits until an expression with `$` for the first element of a selector is true.
-async fn until(page: &Page, css: &str, test: &str) {
-    let test = test.replace('$', "e");
-    page.wait_until(&format!(
-        "(e => e && ({test}))(document.querySelector({css:?}))"
-    ))
-    .await;
-}
-
-/// Both sizes in both schemes, for people to look at.
-async fn look(page: &Page, name: &str) {
-    for (scheme, shade) in [(Scheme::Light, "light"), (Scheme::Dark, "dark")] {
-        for (width, height) in [(1440, 900), (390, 844)] {
-            page.show(width, height, scheme).await;
-            tokio::time::sleep(Duration::from_millis(200)).await;
-            page.screenshot(&format!("icon-{name}-{width}-{shade}"))
-                .await;
-        }
-    }
-    page.show(1440, 900, Scheme::Light).await;
-}
-
-/// Keeps what the page saves, so that a test can read it.
-async fn keep_saved(page: &Page) {
-    page.eval(
-        "window.saved = [];
-         const make = URL.createObjectURL.bind(URL);
-         URL.createObjectURL = blob => { blob.text().then(t => window.saved.push(t)); return make(blob); };",
-    )
-    .await;
-}
-
-/// The last text that was saved.
-async fn saved(page: &Page, number: usize) -> String {
-    page.wait_until(&format!("window.saved.length >= {number}"))
-        .await;
-    let text = page
-        .eval("return window.saved[window.saved.length - 1]")
-        .await;
-    text.as_str().expect("a text").to_owned()
-}
-
-/// Reads what a series shows: pairs of x and y in the units of the axes, told by the ticks.
-async fn drawn(page: &Page, chart: &str, series: &str) -> Vec<(f64, f64)> {
-    let script = format!(
-        "const svg = document.querySelector('[data-chart={chart:?}] [data-testid=chart-svg]');
-         const ticks = [...svg.querySelectorAll('text[data-tick=y]')].map(t =>
-           [Number(t.getAttribute('y')) - 4,
-            Number(t.textContent.replaceAll('\\u2009', '').replace('\\u2212', '-'))]);
-         const [a, b] = [ticks[0], ticks[ticks.length - 1]];
-         const y = p => a[1] + (p - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
-         const [left, , width] = svg.dataset.plot.split(' ').map(Number);
-         const [low, high] = svg.dataset.x.split(' ').map(Number);
-         const x = p => low + (p - left) / width * (high - low);
-         const d = svg.querySelector('path[data-series={series:?}]').getAttribute('d');
-         return [...d.matchAll(/[ML](-?[\\d.]+) (-?[\\d.]+)/g)].map(m => [x(Number(m[1])), y(Number(m[2]))]);"
-    );
-    let found = page.eval(&script).await;
-    let pair = |p: &Value| Some((p.get(0)?.as_f64()?, p.get(1)?.as_f64()?));
-    let points = found.as_array().expect("points").iter();
-    points.map(|p| pair(p).expect("two numbers")).collect()
-}
-
-/// Holds that a series shows these values, within what a pixel can say.
-async fn shows(page: &Page, chart: &str, series: &str, wanted: &[f64]) {
-    let points = drawn(page, chart, series).await;
-    let span = wanted.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
-    assert_eq!(points.len(), wanted.len(), "{chart} {series}: {points:?}");
-    for ((_, y), wanted) in points.iter().zip(wanted) {
-        assert!(
-            (y - wanted).abs() < span * 0.006 + 0.05,
-            "{chart} {series}: {y} instead of {wanted}"
-        );
-    }
-}
-
 /// Torque over position: the latest stroke against its reference, as the files say.
 #[tokio::test]
 async fn torque_signatures_are_drawn_as_they_were_read() {
@@ -170,29 +92,52 @@ async fn torque_signatures_are_drawn_as_they_were_read() {
         let records = snapshot.files.get(file).expect("a curve");
         let words = records.run(0, 101).expect("all samples");
         let wanted: Vec<f64> = words.iter().map(|w| f64::from(w.cast_signed())).collect();
-        shows(&page, "torque", &format!("file-{file}"), &wanted).await;
+        page.assert_shows("torque", &format!("file-{file}"), &wanted)
+            .await;
     }
-    look(&page, "curves").await;
+    page.look("icon-curves").await;
     page.click("[data-testid=preset][data-key=both]").await;
     page.wait_for("path[data-series=file-2001]").await;
-    assert_eq!(
-        count(&page, "[data-chart=torque] path[data-series]").await,
-        2
-    );
+    assert_eq!(page.count("[data-chart=torque] path[data-series]").await, 2);
     page.click("[data-testid=preset][data-key=all]").await;
-    until(
-        &page,
+    page.until(
         "[data-testid=signatures]",
         "$.querySelectorAll('tbody tr').length > 4",
     )
     .await;
     let verdict = page.text("[data-testid=thresholds]").await;
     assert!(verdict.contains("10 points"), "{verdict}");
-    keep_saved(&page).await;
+    page.keep_saved().await;
     page.click("[data-testid=chart-save-csv]").await;
-    let csv = saved(&page, 1).await;
+    let csv = page.saved(1).await;
     assert_eq!(csv.lines().count(), 102, "a head and 101 positions");
-    look(&page, "curves-all").await;
+    // Each curve is a column; each row is a percent of travel with what the files say of it.
+    let files = page
+        .eval(
+            "return [...document.querySelectorAll('[data-chart=torque] path[data-series]')]
+               .map(path => path.dataset.series)",
+        )
+        .await;
+    let files: Vec<String> = serde_json::from_value(files).expect("texts");
+    assert!(files.len() > 4, "{files:?}");
+    for (position, line) in (0_u16..).zip(csv.lines().skip(1)) {
+        let cells: Vec<_> = line.split(',').collect();
+        assert_eq!(cells.len(), files.len() + 1, "{line}");
+        assert_eq!(cells[0].trim_end_matches(" %"), position.to_string());
+        for (file, cell) in files.iter().zip(&cells[1..]) {
+            let Some(file) = file.strip_prefix("file-") else {
+                continue;
+            };
+            let words = snapshot.files.get(file.parse().expect("a number"));
+            let word = words.and_then(|w| w.get(position)).expect("a sample");
+            assert_eq!(
+                *cell,
+                word.cast_signed().to_string(),
+                "{file} at {position}"
+            );
+        }
+    }
+    page.look("icon-curves-all").await;
     page.assert_clean().await;
 }
 
@@ -208,7 +153,7 @@ async fn strokes_and_trends_are_drawn_as_they_were_read() {
         .get("travel_limit")
         .and_then(shared::icon3000::Item::number)
         .expect("a travel");
-    let points = drawn(&page, "pst", "out").await;
+    let points = page.drawn("pst", "out").await;
     let at = usize::try_from(travel).expect("a place");
     let tenths = records.run(0, 51).expect("times")[at];
     let (x, y) = points[at];
@@ -218,9 +163,25 @@ async fn strokes_and_trends_are_drawn_as_they_were_read() {
     );
     let verdict = page.text("[data-testid=verdict]").await;
     assert!(!verdict.is_empty());
-    look(&page, "pst").await;
+    page.look("icon-pst").await;
+    // An emergency stroke: tenths of a second to each percent of travel (table 40).
     go(&page, "curves?show=efs").await;
-    look(&page, "efs").await;
+    page.wait_for("[data-chart=efs] [data-testid=chart-svg]")
+        .await;
+    let words = snapshot.files.get(3501).and_then(|r| r.run(0, 101));
+    let words = words.expect("the times of a stroke");
+    let times: Vec<f64> = words
+        .iter()
+        .map(|tenths| f64::from(*tenths) / 10.0)
+        .collect();
+    page.assert_shows("efs", "out", &times).await;
+    let verdict = page.text("[data-testid=verdict]").await;
+    let took = format!("{:.1} s", times[100]);
+    assert!(
+        verdict.contains("Emergency stroke") && verdict.contains(&took),
+        "{verdict}, {took}"
+    );
+    page.look("icon-efs").await;
     go(&page, "curves?show=trends").await;
     page.wait_for("[data-testid=recorder]").await;
     let stored = snapshot
@@ -230,9 +191,9 @@ async fn strokes_and_trends_are_drawn_as_they_were_read() {
         .expect("a count");
     let series = "trend-5100-electronics_temperature";
     page.wait_for(&format!("[data-chart={series}] svg")).await;
-    let points = drawn(&page, series, "motor_temperature").await;
+    let points = page.drawn(series, "motor_temperature").await;
     assert_eq!(points.len(), usize::from(stored));
-    look(&page, "trends").await;
+    page.look("icon-trends").await;
     page.assert_clean().await;
 }
 
@@ -247,13 +208,12 @@ async fn logs_are_tables() {
             .get(file)
             .and_then(|r| r.get(0))
             .expect("a count");
-        until(
-            &page,
+        page.until(
             "[data-testid=log-status]",
             &format!("$.innerText.startsWith('{stored} ')"),
         )
         .await;
-        look(&page, &format!("log-{file}")).await;
+        page.look(&format!("icon-log-{file}")).await;
     }
     page.click("[data-testid=icon-log-2]").await;
     page.wait_for("[data-testid=log-row]").await;
@@ -267,13 +227,12 @@ async fn logs_are_tables() {
         .and_then(|r| r.get(0))
         .expect("a count");
     page.wait_until(&format!("{first} == '{stored}'")).await;
-    keep_saved(&page).await;
+    page.keep_saved().await;
     page.click("[data-testid=log-csv]").await;
-    let csv = saved(&page, 1).await;
-    assert_eq!(csv.lines().count(), usize::from(stored) + 1, "{csv}");
-    assert!(csv.starts_with("number,device_time,utc,"), "{csv}");
+    let csv = page.saved(1).await;
+    assert_table(&csv, snapshot.files.get(2).expect("a log"), true);
     page.click("[data-testid=log-json]").await;
-    let json: Value = serde_json::from_str(&saved(&page, 2).await).expect("JSON");
+    let json: Value = serde_json::from_str(&page.saved(2).await).expect("JSON");
     assert_eq!(json.as_array().map(Vec::len), Some(usize::from(stored)));
     let codes: Vec<u64> = json
         .as_array()
@@ -290,46 +249,139 @@ async fn logs_are_tables() {
     page.assert_clean().await;
 }
 
+/// Holds that a saved table of alarms says what the words of file 2 say: how many, then for each the
+/// seconds since 2000 in two words and a code (table 31).
+fn assert_table(csv: &str, log: &shared::icon3000::Records, oldest_first: bool) {
+    let stored = log.get(0).expect("a count");
+    let mut lines: Vec<_> = csv.lines().collect();
+    let head = lines.remove(0);
+    assert!(head.starts_with("number,device_time,utc,"), "{head}");
+    assert_eq!(lines.len(), usize::from(stored), "{csv}");
+    if oldest_first {
+        lines.reverse();
+    }
+    for (at, line) in (0..stored).zip(lines) {
+        let word = |n: u16| log.get(1 + 3 * at + n).expect("an entry");
+        let [high, low, code] = [word(0), word(1), word(2)];
+        let cells: Vec<_> = line.split(',').collect();
+        assert_eq!(cells[0], (at + 1).to_string(), "{line}");
+        let since_2000 = i64::from(high) << 16 | i64::from(low);
+        assert_eq!(seconds(cells[1]), 946_684_800 + since_2000, "{line}");
+        let raw = cells.last().expect("raw words").replace(' ', "");
+        assert_eq!(raw, format!("{high:04X}{low:04X}{code:04X}"), "{line}");
+    }
+}
+
+/// Seconds since 1970 of `2025-12-06T05:48:40`, day by day.
+fn seconds(text: &str) -> i64 {
+    let numbers: Vec<i64> = text
+        .split(['-', 'T', ':'])
+        .map(|n| n.parse().expect("a number"))
+        .collect();
+    let [year, month, day, hour, minute, second] = numbers[..] else {
+        panic!("{text} is no time");
+    };
+    let leap = |y: i64| y % 4 == 0 && (y % 100 != 0 || y % 400 == 0);
+    let years: i64 = (1970..year).map(|y| 365 + i64::from(leap(y))).sum();
+    let lengths = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+    let months: i64 = (1..month)
+        .zip(lengths)
+        .map(|(m, days)| days + i64::from(m == 2 && leap(year)))
+        .sum();
+    ((years + months + day - 1) * 24 + hour) * 3600 + minute * 60 + second
+}
+
+/// Health names each condition where it stands: a hot motor and a low battery in HR 3010, a stroke
+/// test that came back too late in HR 3009 (table 5); the worst first, each with its reason.
+#[tokio::test]
+async fn health_names_what_the_bits_say() {
+    let faults = [Fault::Thermostat, Fault::LowBattery, Fault::PstReturn];
+    let snapshot = faulty(Model::Icon3000v2, &faults);
+    let (page, snapshot) = opened_with("health", snapshot).await;
+    page.wait_for("[data-testid=health]").await;
+    for register in [3009, 3010] {
+        let cell = snapshot.image.cell(Table::Holding, Address::new(register));
+        let word = cell.expect("it was read").word;
+        assert_health(&page, register, word).await;
+    }
+    let listed = page
+        .eval(
+            "return [...document.querySelectorAll('[data-testid=health]')]
+               .map(e => `${e.dataset.key} ${e.dataset.status}`)",
+        )
+        .await;
+    let listed: Vec<String> = serde_json::from_value(listed).expect("texts");
+    assert_eq!(listed[0], "motor_thermostat F", "{listed:?}");
+    assert!(listed.contains(&"low_battery M".to_owned()), "{listed:?}");
+    let rank = |entry: &String| "FCSM".find(&entry[entry.len() - 1..]);
+    assert!(listed.is_sorted_by_key(rank), "{listed:?}");
+    let sum = page.text("[data-testid=health-sum]").await;
+    assert!(
+        sum.contains("Failure") && sum.contains(&format!("{} conditions", listed.len())),
+        "{sum}"
+    );
+    page.look("icon-health-faults").await;
+    page.assert_clean().await;
+}
+
+/// Holds that the conditions of a register on the screen are the bits of its word, no more and no
+/// less, each with what to check.
+async fn assert_health(page: &Page, register: u16, word: u16) {
+    let bits: Vec<u16> = (0..16).filter(|bit| word >> bit & 1 == 1).collect();
+    let script = format!(
+        "return [...document.querySelectorAll('[data-testid=health]')]
+           .filter(e => e.innerText.includes('Check: '))
+           .map(e => e.innerText.match(/HR {register}, bit (\\d+)/)?.[1])
+           .filter(Boolean).map(Number).sort((a, b) => a - b)"
+    );
+    assert_eq!(
+        page.eval(&script).await,
+        serde_json::json!(bits),
+        "HR {register}"
+    );
+}
+
 /// Health, identity, counters, settings: read back from the words of the snapshot.
 #[tokio::test]
 async fn everything_else_is_shown_as_it_was_read() {
     let (page, snapshot) = opened("health").await;
-    let sum = page.text("[data-testid=health-sum]").await;
-    assert!(!sum.is_empty());
-    look(&page, "health").await;
+    page.wait_for("[data-testid=health-sum]").await;
+    for register in [3009, 3010, 3011] {
+        let cell = snapshot.image.cell(Table::Holding, Address::new(register));
+        assert_health(&page, register, cell.expect("it was read").word).await;
+    }
+    page.look("icon-health").await;
 
     go(&page, "identity").await;
     let report = snapshot.report().expect("a report");
-    until(
-        &page,
+    page.until(
         "[data-testid=identity][data-key=serial_number]",
         &format!("$.innerText.includes({:?})", report.serial_number),
     )
     .await;
-    assert_eq!(count(&page, "[data-testid=card]").await, 5);
-    look(&page, "identity").await;
+    assert_eq!(page.count("[data-testid=card]").await, 5);
+    page.look("icon-identity").await;
 
     go(&page, "communication").await;
     let messages = snapshot.counters.get(&14).expect("a counter").to_string();
-    until(
-        &page,
+    page.until(
         "[data-testid=counter][data-sub='14']",
         &format!("$.innerText.replaceAll('\\u2009', '').includes('{messages}')"),
     )
     .await;
-    look(&page, "communication").await;
+    page.look("icon-communication").await;
 
     go(&page, "configuration").await;
-    until(&page, "[data-testid=words-pst]", "$.innerText.length > 60").await;
+    page.until("[data-testid=words-pst]", "$.innerText.length > 60")
+        .await;
     page.click("[data-testid=icon-row][data-address='3615'] button")
         .await;
-    until(
-        &page,
+    page.until(
         "[data-testid=icon-row][data-address='3615']",
         "$.innerText.includes('E03') && $.innerText.includes('VCIOM-16345-EN')",
     )
     .await;
-    look(&page, "configuration").await;
+    page.look("icon-configuration").await;
     page.assert_clean().await;
 }
 
@@ -345,36 +397,27 @@ async fn snapshots_are_compared_by_meaning() {
     }
     let page = single_file().await;
     page.wait_for("[data-testid=snapshot-file]").await;
-    look(&page, "snapshots-none").await;
-    open(&page, "no.json", "{}").await;
+    page.look("icon-snapshots-none").await;
+    page.open_file(FILE, "no.json", "{}").await;
     let trouble = page.text("[data-testid=snapshot-trouble]").await;
     assert!(trouble.contains("no.json is no snapshot"), "{trouble}");
-    open(&page, "before.json", &before.to_text()).await;
+    page.open_file(FILE, "before.json", &before.to_text()).await;
     page.wait_for("[data-testid=snapshot][data-key='0']").await;
-    open(&page, "after.json", &after.to_text()).await;
+    page.open_file(FILE, "after.json", &after.to_text()).await;
     page.wait_for("[data-testid=snapshot][data-key='1']").await;
     page.eval("location.hash = '#/snapshots?from=0&to=0'").await;
-    until(
-        &page,
-        "[data-testid=compare-sum]",
-        "$.innerText === 'No change.'",
-    )
-    .await;
+    page.until("[data-testid=compare-sum]", "$.innerText === 'No change.'")
+        .await;
     page.eval("location.hash = '#/snapshots?from=0&to=1'").await;
-    until(
-        &page,
+    page.until(
         "[data-testid=compare-sum]",
         "$.innerText.startsWith('3 changes')",
     )
     .await;
-    assert_eq!(count(&page, "[data-testid=change]").await, 3);
-    until(
-        &page,
-        "[data-path='holding.3615']",
-        "$.innerText.includes('25 %')",
-    )
-    .await;
-    look(&page, "compare").await;
+    assert_eq!(page.count("[data-testid=change]").await, 3);
+    page.until("[data-path='holding.3615']", "$.innerText.includes('25 %')")
+        .await;
+    page.look("icon-compare").await;
     page.assert_clean().await;
 }
 
@@ -383,21 +426,19 @@ async fn snapshots_are_compared_by_meaning() {
 async fn an_older_model_shows_what_it_has() {
     let page = single_file().await;
     let snapshot = device(Model::Icon3000);
-    open(&page, "old.json", &snapshot.to_text()).await;
+    page.open_file(FILE, "old.json", &snapshot.to_text()).await;
     page.wait_for("[data-testid=snapshot]").await;
     go(&page, "curves").await;
     page.wait_for("[data-chart=torque] [data-testid=chart-svg]")
         .await;
     go(&page, "curves?show=pst").await;
-    until(
-        &page,
+    page.until(
         "[data-testid=icon-nothing]",
         "$.innerText.includes('no files')",
     )
     .await;
     go(&page, "configuration").await;
-    until(
-        &page,
+    page.until(
         "[data-testid=level]",
         "$.innerText.includes('no user levels')",
     )

@@ -49,12 +49,23 @@ pub(super) struct HartArgs {
     /// The valve stays where it is.
     #[arg(long)]
     resting: bool,
+    /// Under digital control (command 79, variable 1) with this demand: it does not follow the loop.
+    #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "factory")]
+    digital: Option<f32>,
+    /// Under factory control (command 79, variable 4) at this percentage of the factory stroke.
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    factory: Option<f32>,
 }
 
 fn id(text: &str) -> Result<u32, String> {
     let good = text.len() == 6 && text.bytes().all(|b| b.is_ascii_hexdigit());
     let number = u32::from_str_radix(text, 16).ok().filter(|_| good);
     number.ok_or_else(|| "write six hexadecimal digits, as 012345".into())
+}
+
+fn percent(text: &str) -> Result<f32, String> {
+    let number = text.parse().ok().filter(|n| (0.0..=100.0).contains(n));
+    number.ok_or_else(|| "write 0 to 100".into())
 }
 
 /// Serves the device until it is asked to end. Without a device named it is an IQ.
@@ -96,6 +107,12 @@ pub(super) async fn run(
                 family.key()
             ));
         }
+    }
+    if let Some(demand) = args.digital {
+        valve.set_digital(demand);
+    }
+    if let Some(place) = args.factory {
+        valve.set_factory(place);
     }
     valve.set_busy(args.busy);
     valve.set_damaged(args.damaged);

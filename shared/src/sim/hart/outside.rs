@@ -1,6 +1,6 @@
 //! What stands around the device and can be changed, and what can be looked at.
 
-use super::device::HartDevice;
+use super::device::{Control, HartDevice};
 use super::setup::{HartSelector, HartSetup};
 use super::state::{OWN, State};
 
@@ -40,6 +40,18 @@ impl HartDevice {
     /// Bits of the device status that stand in any case.
     pub const fn inject_device_status(&mut self, bits: u8) {
         self.state.device = bits;
+    }
+
+    /// Puts it under digital control (command 79, variable 1) with this demand in percent, as a master
+    /// may have left it; the valve does not follow the loop current then (table 17).
+    pub const fn set_digital(&mut self, percent: f32) {
+        self.control = Control::Digital(percent);
+    }
+
+    /// Puts it under factory control (command 79, variable 4) with this percentage of the factory
+    /// stroke (table 17).
+    pub const fn set_factory(&mut self, percent: f32) {
+        self.control = Control::Factory(percent);
     }
 
     /// Makes it busy (code 32) for so many requests.
