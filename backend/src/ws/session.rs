@@ -69,12 +69,12 @@ where
 {
     let mut activity = plant.activity();
     let (done, mut finished) = mpsc::channel(MAX_READS);
-    let (dop_news, mut objects) = mpsc::channel(Outlet::SIZE);
+    let (outlet, mut told) = mpsc::channel(Outlet::SIZE);
     let mut page = Page {
         plant,
         client,
         done,
-        dop_news: Outlet::new(dop_news),
+        outlet: Outlet::new(outlet),
         reads: 0,
         subscriptions: Vec::new(),
         networks: Vec::new(),
@@ -94,7 +94,7 @@ where
                 incoming = socket.next() => Event::Heard(incoming.and_then(Result::ok)),
                 // The sender is part of the page: there always is one.
                 message = finished.recv() => Event::Done(message),
-                text = objects.recv() => Event::Objects(text),
+                text = told.recv() => Event::Told(text),
                 changed = activity.changed() => Event::News(changed.is_ok()),
                 _ = tick.tick() => Event::Tick,
             }
@@ -119,7 +119,7 @@ where
                 page.reads = page.reads.saturating_sub(1);
                 messages.extend(message);
             }
-            Some(Event::Objects(text)) => messages.extend(text),
+            Some(Event::Told(text)) => messages.extend(text),
             Some(Event::Tick) => {
                 let now_us = plant.clock().now().get();
                 messages.push(encode(&ToPage::Tick { now_us }));
@@ -144,8 +144,8 @@ enum Event {
     Heard(Option<Message>),
     /// A read is over.
     Done(Option<Utf8Bytes>),
-    /// News about diagnostic objects.
-    Objects(Option<Utf8Bytes>),
+    /// News for a program that the page has loaded.
+    Told(Option<Utf8Bytes>),
     /// There is something new; false: there never will be.
     News(bool),
     /// The clock is due.
@@ -208,8 +208,8 @@ struct Page<'a> {
     plant: &'a Plant,
     client: ClientId,
     done: mpsc::Sender<Utf8Bytes>,
-    /// Takes the news about diagnostic objects.
-    dop_news: Outlet,
+    /// Takes what the programs that this page may have loaded wait for.
+    outlet: Outlet,
     /// Reads under way.
     reads: usize,
     subscriptions: Vec<Subscription>,

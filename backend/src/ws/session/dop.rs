@@ -44,19 +44,19 @@ impl Page<'_> {
             client: self.client,
             device,
             ask,
-            out: self.dop_news.clone(),
+            out: self.outlet.clone(),
         }
     }
 
     /// Whoever waits for an id is told that it is over; others get a plain refusal.
     fn refuse_dop(&self, id: Option<u32>, tag: &str, text: Option<String>) -> Option<ToPage> {
-        let (Some(id), true) = (id, self.dop_news.has_room()) else {
+        let (Some(id), true) = (id, self.outlet.has_room()) else {
             return Some(match text {
                 Some(text) => ToPage::Refused { text },
                 None => unknown("device", tag),
             });
         };
-        self.dop_news.send(DopNews::Failed {
+        self.outlet.send(DopNews::Failed {
             id,
             device: tag.to_owned(),
             request: 0,
@@ -64,7 +64,7 @@ impl Page<'_> {
             outcome: Outcome::Refused,
             text: text.unwrap_or_else(|| format!("There is no device \"{tag}\"; reload the page.")),
         });
-        self.dop_news.send(DopNews::Done {
+        self.outlet.send(DopNews::Done {
             id,
             device: tag.to_owned(),
             ok: 0,

@@ -113,7 +113,7 @@ impl Page<'_> {
             client: self.client,
             device,
             ask,
-            out: self.dop_news.clone(),
+            out: self.outlet.clone(),
         })
     }
 
@@ -128,10 +128,10 @@ impl Page<'_> {
 
     /// Whoever waits for an id is told that it is over.
     fn refuse(&self, id: u32, text: String) -> Option<ToPage> {
-        if !self.dop_news.has_room() {
+        if !self.outlet.has_room() {
             return Some(ToPage::Refused { text });
         }
-        self.dop_news.send(HartNews::Done {
+        self.outlet.send(HartNews::Done {
             id,
             ok: 0,
             failed: 1,
@@ -147,10 +147,10 @@ impl Page<'_> {
         commands: &[HartCommand],
         text: String,
     ) -> Option<ToPage> {
-        if self.dop_news.has_room()
+        if self.outlet.has_room()
             && let Some(command) = commands.first()
         {
-            self.dop_news.send(HartNews::Exchange {
+            self.outlet.send(HartNews::Exchange {
                 id: Some(id),
                 device: tag.to_owned(),
                 command: command.number,

@@ -38,16 +38,16 @@ impl Page<'_> {
             client: self.client,
             device,
             ask,
-            out: self.dop_news.clone(),
+            out: self.outlet.clone(),
         }
     }
 
     /// Whoever waits for an id is told that it is over.
     fn refuse_icon(&self, id: u32, tag: &str, text: String) -> Option<ToPage> {
-        if !self.dop_news.has_room() {
+        if !self.outlet.has_room() {
             return Some(unknown("device", tag));
         }
-        self.dop_news.send(IconNews::Exchange {
+        self.outlet.send(IconNews::Exchange {
             id,
             device: tag.to_owned(),
             step: 0,
@@ -57,7 +57,7 @@ impl Page<'_> {
             text,
             at_us: 0,
         });
-        self.dop_news.send(IconNews::Done {
+        self.outlet.send(IconNews::Done {
             id,
             device: tag.to_owned(),
             ok: 0,
