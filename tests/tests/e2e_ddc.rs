@@ -1,6 +1,9 @@
 //! DDC-100 networks end to end: a simulated loop with a break that comes, a unit, a tag list, and the
 //! fault table and scan time without a network, as a person sees them.
 
+#[path = "e2e_ddc/shapes.rs"]
+mod shapes;
+
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -17,8 +20,6 @@ struct Network {
 impl Network {
     /// Starts one with so many units of mixed types. `faults` are those of the simulator.
     fn start(name: &str, shape: &str, units: usize, faults: &[&str]) -> Self {
-        let folder = std::env::temp_dir().join(format!("valvescope-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder for the configuration");
         let quoted: Vec<String> = faults.iter().map(|f| format!("\"{f}\"")).collect();
         let mut text = format!(
             "[[bus]]\nname = \"Loop 1\"\nkind = \"ddc100-simulator\"\nshape = \"{shape}\"\n\
@@ -32,6 +33,13 @@ impl Network {
                  bus = \"Loop 1\"\nunit = {unit}\n"
             ));
         }
+        Self::with(name, &text)
+    }
+
+    /// Starts one with this configuration.
+    fn with(name: &str, text: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("valvescope-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder for the configuration");
         let file = folder.join("valvescope.toml");
         std::fs::write(&file, text).expect("a folder that can be written to");
         let server = Server::start(&["--config", file.to_str().expect("a plain path")]);
@@ -263,17 +271,9 @@ async fn a_tag_list_goes_round() {
         assert!(row.contains(part), "{part}: {row}");
     }
     page.look("ddc-tags").await;
-    // Catch the file that is saved.
-    page.eval(
-        "window.saved = '';
-         const make = URL.createObjectURL;
-         URL.createObjectURL = blob => { blob.text().then(t => window.saved = t); return make(blob); };",
-    )
-    .await;
+    page.keep_saved().await;
     page.click("[data-testid=export-tags]").await;
-    page.wait_until("window.saved.length > 0").await;
-    let saved = page.eval("return window.saved").await;
-    let saved = saved.as_str().expect("a text").to_owned();
+    let saved = page.saved(1).await;
     assert!(saved.contains("80-MOV-4141,\"Feed, left\",1"), "{saved}");
     assert!(
         saved.contains("MOV-002,") && saved.contains(",40009,"),
@@ -290,10 +290,8 @@ async fn a_tag_list_goes_round() {
     )
     .await;
     assert_eq!(page.count("[data-testid=tag-problem]").await, 0);
-    page.eval("window.saved = ''").await;
     page.click("[data-testid=export-tags]").await;
-    page.wait_until("window.saved.length > 0").await;
-    assert_eq!(page.eval("return window.saved").await, Value::String(saved));
+    assert_eq!(page.saved(2).await, saved);
     // The tag stands in the table of the network, too.
     page.click("[data-testid=net-tab][data-tab=main]").await;
     page.wait_until(
@@ -374,5 +372,16 @@ async fn as_many_units_as_there_can_be() {
     let drawn = page.count("[data-testid=unit-row]").await;
     assert!((5..60).contains(&drawn), "only what is in view: {drawn}");
     page.look("ddc-many").await;
+    // A whole pass: each of them is known, and the cable is found whole.
+    let good = format!("document.querySelector('{FINDING}[data-key=no_fault][data-certain=true]')");
+    page.wait_within(&good, seconds(60)).await;
+    page.wait_until("document.querySelectorAll('.ring .node.unknown').length === 0")
+        .await;
+    page.click("[data-testid=sort-unit]").await;
+    page.wait_until("document.querySelector('[data-testid=unit-row]')?.dataset.unit === '1'")
+        .await;
+    page.until("[data-testid=unit-count]", "$.innerText === '250 of 250'")
+        .await;
+    page.look("ddc-many-whole").await;
     page.assert_clean().await;
 }

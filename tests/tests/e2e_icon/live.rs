@@ -119,6 +119,7 @@ async fn every_tab_is_read_from_the_line() {
     for tab in [
         "curves",
         "curves?show=pst",
+        "curves?show=efs",
         "curves?show=trends",
         "logs",
         "health",
