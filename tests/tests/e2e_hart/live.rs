@@ -180,7 +180,7 @@ async fn a_line_shows_its_frames_and_is_searched() {
     page.click("[data-testid=hart-bus] [data-testid=hart-cancel]")
         .await;
     // By tag and by long tag (commands 11 and 21): one device answers, and it is the right one. The
-    // second of the plant has the id 012346 behind the type of a CVA.
+    // second of the plant has the id 012346.
     for (tag, button) in [("fv-402", "hart-find"), ("FV-402", "hart-find-long")] {
         page.until_within("[data-testid=hart-scan]", "!$.disabled", SLOW)
             .await;
@@ -210,7 +210,7 @@ async fn a_line_shows_its_frames_and_is_searched() {
 }
 
 /// Address of the second device of the plant.
-const SECOND: &str = "2EDC 012346";
+const SECOND: &str = "2EDD012346";
 
 /// A configuration that serves one line.
 struct Plant {

@@ -119,7 +119,6 @@ async fn every_tab_is_read_from_the_line() {
     for tab in [
         "curves",
         "curves?show=pst",
-        "curves?show=efs",
         "curves?show=trends",
         "logs",
         "health",
@@ -133,6 +132,12 @@ async fn every_tab_is_read_from_the_line() {
         page.look(&format!("icon-live-{}", tab.replace("?show=", "-")))
             .await;
     }
+
+    // Emergency strokes came with the partial ones.
+    visit(&page, "curves?show=efs").await;
+    page.wait_for("[data-chart=efs] [data-testid=chart-svg]")
+        .await;
+    page.look("icon-live-curves-efs").await;
 
     // Settings: the list of registers asks the device for the same words.
     let shown = [3615, 3580, 3017];
