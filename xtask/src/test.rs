@@ -8,7 +8,7 @@
 //! | golden files, properties, the bridge | `tests/tests/*.rs` | natively |
 //! | the page and `shared` in a browser | `frontend/tests/wasm_*.rs`, `tests/tests/wasm_*.rs` | headless, as wasm |
 //! | other implementations as peers | `tests/tests/peers.rs`, `hart_peers.rs`, feature `peers` | natively |
-//! | end to end | `tests/tests/e2e*.rs`, feature `browser` | the built binary and a browser |
+//! | end to end | `tests/tests/e2e/`, feature `browser` | the built binary and a browser |
 //!
 //! A file `wasm_*.rs` begins with `#![cfg(target_arch = "wasm32")]`, so that it is empty natively.
 
@@ -73,12 +73,11 @@ fn steps(report: &mut Report) -> Result {
             .iter()
             .try_for_each(|test| log.run_tests(test, peers.environment(&mut with_binary(test))))
     })?;
-    for test in END_TO_END {
-        report.step("end to end", |log| {
-            log.run_tests(test, browser.environment(&mut with_binary(test)))
-        })?;
-    }
-    Ok(())
+    report.step("end to end", |log| {
+        let mut command = with_binary(END_TO_END);
+        command.args(["--", BROWSERS]);
+        log.run_tests(END_TO_END, browser.environment(&mut command))
+    })
 }
 
 /// A cargo verb over the packages tested natively.
@@ -91,14 +90,17 @@ fn native(verb: &str, args: &[&str]) -> Command {
 /// Tests against other implementations.
 const PEERS: [&str; 2] = ["peers", "hart_peers"];
 
-/// Tests of the binary with a browser.
-const END_TO_END: [&str; 5] = ["e2e", "e2e_ddc", "e2e_dop", "e2e_hart", "e2e_icon"];
+/// The tests of the binary with a browser.
+const END_TO_END: &str = "e2e";
+
+/// How many browsers run side by side: they wait for most of the time.
+const BROWSERS: &str = "--test-threads=4";
 
 /// Selects the binary together with the tests that start it: without a test among the targets,
 /// cargo would leave out the dev-dependencies, unify other features and compile most of it again.
 fn binary_and_its_tests() -> Vec<&'static str> {
     let mut args = vec!["--bin", "valvescope", "--features", BINARY_FEATURES];
-    let tests = PEERS.iter().chain(&END_TO_END);
+    let tests = PEERS.into_iter().chain([END_TO_END]);
     args.extend(tests.flat_map(|test| ["--test", test]));
     args
 }

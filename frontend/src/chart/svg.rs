@@ -27,6 +27,18 @@ pub struct Size {
     pub height: f64,
 }
 
+impl Size {
+    /// The size of a picture in a page that has this width for it. Many names take many rows; the
+    /// plot keeps its height.
+    #[must_use]
+    pub fn of(chart: &Chart, width: f64) -> Self {
+        let rows = Names::of(chart, width).rows().saturating_sub(2);
+        let names = LINE * u32::try_from(rows).map_or(0.0, f64::from);
+        let height = names + if width < 560.0 { 260.0 } else { 320.0 };
+        Self { width, height }
+    }
+}
+
 /// Where a picture is to be seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {

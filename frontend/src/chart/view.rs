@@ -32,9 +32,9 @@ pub fn ChartView(
     let failed = RwSignal::new(false);
     let plot = NodeRef::<Div>::new();
     observe_width(plot, width);
-    let size = move || Size {
-        width: pixels(width.get()),
-        height: if width.get() < 560 { 260.0 } else { 320.0 },
+    let size = move || {
+        let width = pixels(width.get());
+        chart.with(|c| Size::of(c, width))
     };
     // Another picture begins with all of it.
     let shown = memo(move || {
@@ -50,10 +50,14 @@ pub fn ChartView(
     });
     effect(move || {
         let Some(plot) = plot.get() else { return };
-        let picture = chart.with(|c| draw(c, size(), view.get(), Look::Page));
+        let size = size();
+        let picture = chart.with(|c| draw(c, size, view.get(), Look::Page));
         morph_into(&plot, &picture);
     });
-    let frame = move || chart.with_untracked(|c| Frame::of(c, untrack(size), view.get_untracked()));
+    let frame = move || {
+        let size = untrack(size);
+        chart.with_untracked(|c| Frame::of(c, size, view.get_untracked()))
+    };
     let place_of = move |event: &web_sys::PointerEvent| -> Option<(f64, f64)> {
         let left = plot.get_untracked()?.get_bounding_client_rect().left();
         let pixels = f64::from(event.client_x()) - left;

@@ -207,3 +207,24 @@ fn rules_stand_upright() {
     assert_eq!(crate::chart::cursor::stops(&chart).len(), 3);
     assert_eq!(crate::chart::table::head(&chart).len(), 3);
 }
+
+/// However many names stand above it, the plot can be read.
+#[test]
+fn names_take_no_room_from_the_plot() {
+    let mut chart = torque();
+    let one = chart.series[0].clone();
+    chart.series = (0..27)
+        .map(|n| Series {
+            key: format!("s{n}"),
+            label: format!("Open, {n} back"),
+            ..one.clone()
+        })
+        .collect();
+    for width in [330.0, 1000.0] {
+        let size = Size::of(&chart, width);
+        let frame = Frame::of(&chart, size, View::default());
+        assert!(frame.height >= 150.0, "{width}: {frame:?}");
+    }
+    let few = Size::of(&torque(), 330.0);
+    assert_eq!(few.height, 260.0);
+}

@@ -1,4 +1,4 @@
-//! End to end: the built binary, a browser, and what a person sees.
+//! The page itself: pasted bytes, registers, traffic, a connection that is lost.
 
 use std::time::Duration;
 

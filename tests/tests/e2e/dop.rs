@@ -3,7 +3,6 @@
 
 use std::time::Duration;
 
-use serde_json::Value;
 use tests::browser::{Page, Scheme};
 use tests::server::Server;
 

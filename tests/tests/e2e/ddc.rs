@@ -1,7 +1,6 @@
 //! DDC-100 networks end to end: a simulated loop with a break that comes, a unit, a tag list, and the
 //! fault table and scan time without a network, as a person sees them.
 
-#[path = "e2e_ddc/shapes.rs"]
 mod shapes;
 
 use std::path::PathBuf;
@@ -372,7 +371,7 @@ async fn as_many_units_as_there_can_be() {
     let drawn = page.count("[data-testid=unit-row]").await;
     assert!((5..60).contains(&drawn), "only what is in view: {drawn}");
     page.look("ddc-many").await;
-    // A whole pass: each of them is known, and none was found off.
+    // A whole pass: each of them is known.
     page.wait_within(
         "document.querySelectorAll('.ring .node.unknown').length === 0",
         seconds(90),

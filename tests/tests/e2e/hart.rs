@@ -1,8 +1,6 @@
 //! HART end to end: pasted frames, and the simulated loop, as a person sees them.
 
-#[path = "e2e_hart/gateway.rs"]
 mod gateway;
-#[path = "e2e_hart/live.rs"]
 mod live;
 
 use serde_json::{Value, json};

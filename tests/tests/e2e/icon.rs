@@ -1,7 +1,6 @@
 //! The ICON3000 in depth end to end: a simulated actuator saved as a snapshot, opened, looked at and
 //! compared, as a person sees it. What a page shows is compared with the words of the snapshot.
 
-#[path = "e2e_icon/live.rs"]
 mod live;
 
 use serde_json::Value;

@@ -4,7 +4,6 @@
 use std::process::Command;
 use std::time::Duration;
 
-use serde_json::Value;
 use tests::browser::{Page, Scheme};
 use tests::process::Process;
 use tests::server::{Server, binary};
