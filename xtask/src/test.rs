@@ -45,15 +45,10 @@ fn steps(report: &mut Report) -> Result {
         toolchain::ensure_checkers()?;
         tidy::tidy()
     })?;
-    report.step("clippy", |_| {
+    report.step("clippy and page", |_| {
         toolchain::ensure_wasm_target()?;
-        clippy(&["--workspace", "--all-targets", "--all-features"])?;
-        clippy(&[
-            "-p", "shared", "-p", "frontend", "-p", "tests", "--lib", "--bins", "--test", "wasm_*",
-            "--target", WASM,
-        ])
+        side_by_side(lint, || size::size(&web::web()?))
     })?;
-    report.step("page", |_| size::size(&web::web()?))?;
     report.step("native tests", |log| {
         log.run_tests("native", &mut native("test", &["--no-fail-fast"]))?;
         log.run_tests("xtask", &mut shell::cargo(["test", "-p", "xtask"]))
@@ -78,6 +73,29 @@ fn steps(report: &mut Report) -> Result {
         command.args(["--", BROWSERS]);
         log.run_tests(END_TO_END, browser.environment(&mut command))
     })
+}
+
+/// Clippy over everything, natively and as wasm.
+fn lint() -> Result {
+    clippy(&["--workspace", "--all-targets", "--all-features"])?;
+    clippy(&[
+        "-p", "shared", "-p", "frontend", "-p", "tests", "--lib", "--bins", "--test", "wasm_*",
+        "--target", WASM,
+    ])
+}
+
+/// Does two things at the same time. The linker of the page keeps one core busy for most of its
+/// time, and cargo locks the folders of its profile only.
+fn side_by_side(one: fn() -> Result, other: fn() -> Result) -> Result {
+    let told = |result: Result| result.map_err(|error| error.to_string());
+    let (one, other) = std::thread::scope(|scope| {
+        let one = scope.spawn(|| told(one()));
+        let other = told(other());
+        (one.join(), other)
+    });
+    one.unwrap_or_else(|_| Err("the thread panicked; see above".into()))
+        .and(other)
+        .map_err(Into::into)
 }
 
 /// A cargo verb over the packages tested natively.

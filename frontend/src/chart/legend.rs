@@ -6,6 +6,9 @@ use super::{Chart, Shape};
 /// Most series that are named in the picture itself.
 const DIRECT: usize = 4;
 
+/// Most series that are named above the plot of a narrow window: more names would fill it.
+const ABOVE: usize = 8;
+
 /// Average width of a character of 12 pixels.
 pub const CHARACTER: f64 = 6.7;
 
@@ -15,7 +18,8 @@ const WIDE: f64 = 560.0;
 /// Where the names of the series stand.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Names {
-    /// One series: the title says what it is.
+    /// One series: the title says what it is. Or too many for the room: the list beside the picture
+    /// and the values at the cursor name them.
     None,
     /// At the right end of each line; the width they need.
     Right(f64),
@@ -31,6 +35,7 @@ impl Names {
         let widths = chart.lines().map(|s| text_width(&s.label));
         match chart.lines().count() {
             0 | 1 => Self::None,
+            n if n > ABOVE && width < WIDE => Self::None,
             n if n <= DIRECT && lines && width >= WIDE => {
                 Self::Right(widths.fold(0.0, f64::max) + 12.0)
             }

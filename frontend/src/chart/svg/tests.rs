@@ -223,7 +223,7 @@ fn names_take_no_room_from_the_plot() {
     for width in [330.0, 1000.0] {
         let size = Size::of(&chart, width);
         let frame = Frame::of(&chart, size, View::default());
-        assert!(frame.height >= 150.0, "{width}: {frame:?}");
+        assert!(frame.height >= 180.0, "{width}: {frame:?}");
     }
     let few = Size::of(&torque(), 330.0);
     assert_eq!(few.height, 260.0);
