@@ -165,51 +165,60 @@ fn data(
     device: Device,
     out: &mut Decoded,
 ) -> Option<()> {
-    let mut command = command(u16::from(head.command));
-    let family = device.family();
+    let number = u16::from(head.command);
     let mut open = true;
     if way == Way::Response {
         // A refusal of an extended command may leave its number out; the request has it.
-        let number = reader.rest().get(2..4).and_then(|n| n.try_into().ok());
-        let number = number
+        let inner = reader.rest().get(2..4).and_then(|n| n.try_into().ok());
+        let inner = inner
             .map(u16::from_be_bytes)
-            .or_else(|| asked_for(request?));
-        if head.command == 31
-            && let Some(inner) = number.and_then(super::command)
-        {
-            command = Some(inner);
-        }
-        open = status(command, reader, out)?;
+            .or_else(|| asked_for(request?))
+            .filter(|_| number == 31);
+        open = status(
+            inner.and_then(command).or_else(|| command(number)),
+            reader,
+            out,
+        )?;
     }
+    content(
+        number,
+        open,
+        reader,
+        &mut Data::new(way, device.family(), out),
+    )
+}
+
+/// The data of a command, and what is to be said of it. Unless `open`, its response code lets none
+/// follow.
+pub(super) fn content(
+    mut number: u16,
+    open: bool,
+    reader: &mut Reader<'_>,
+    data: &mut Data<'_>,
+) -> Option<()> {
     let len = reader.left();
     // A refusal may still carry the number of an extended command.
-    let numbered = head.command == 31 && len == 2;
+    let numbered = number == 31 && len == 2;
     if !(open || numbered) {
         if len > 0 {
             let len = u16::try_from(len).unwrap_or(u16::MAX);
-            note(out, Hart::Unasked { len }, reader.here());
+            note(data.out, Hart::Unasked { len }, reader.here());
         }
         return None;
     }
-    let mut data = Data::new(way, family, out);
-    if head.command == 31 {
-        let carrier = super::command(31)?;
-        let number = data.carrier(carrier, reader)?;
-        command = super::command(number);
-        if command.is_none() {
-            note(data.out, Hart::Unknown { number }, reader.here());
-        }
-        if !open {
-            return None;
-        }
-    } else if command.is_none() {
-        let number = u16::from(head.command);
-        note(data.out, Hart::Unknown { number }, reader.here());
+    if number == 31 {
+        number = data.carrier(command(31)?, reader)?;
     }
-    let command = command?;
     let whole = reader.here();
+    let Some(command) = command(number) else {
+        note(data.out, Hart::Unknown { number }, whole);
+        return None;
+    };
+    if !open {
+        return None;
+    }
     data.command(command, reader);
-    if way == Way::Request {
+    if data.way == Way::Request {
         let effects = command.effects_of(usize::from(whole.len));
         for effect in effects.iter().copied() {
             if !matches!(effect, Effect::Reads | Effect::Carries) {
@@ -217,10 +226,9 @@ fn data(
             }
         }
     }
-    if let Some(family) = family
+    if let Some(family) = data.family
         && !command.families.contains(&family)
     {
-        let number = command.number;
         note(data.out, Hart::NotListed { number }, whole);
     }
     Some(())
@@ -239,34 +247,7 @@ fn status(
     out: &mut Decoded,
 ) -> Option<bool> {
     let (first, place) = reader.u8()?;
-    let open = if first & 0x80 != 0 {
-        flags(
-            out,
-            None,
-            Name::Def(&ERROR),
-            u32::from(first),
-            &COMMUNICATION_ERROR,
-            place,
-        );
-        note(out, Hart::Line, place);
-        false
-    } else {
-        let words = code_words(command, first);
-        let named = Some(words).filter(|w| !w.is_empty());
-        let value = Value::Named(u32::from(first), named);
-        out.push(None, Name::Def(&CODE), value, place);
-        let (class, _) = class(first);
-        let error = class == Class::Error;
-        if class != Class::Success {
-            let finding = Hart::Code {
-                code: first,
-                words,
-                error,
-            };
-            note(out, finding, place);
-        }
-        !error
-    };
+    let open = answered(command, first, &CODE, place, out);
     let (second, place) = reader.u8()?;
     flags(
         out,
@@ -277,6 +258,45 @@ fn status(
         place,
     );
     Some(open)
+}
+
+/// The first status byte: a communication error, or a response code as this field. False if no data
+/// follow.
+pub(super) fn answered(
+    command: Option<&'static super::model::Command>,
+    first: u8,
+    def: &'static FieldDef,
+    place: Place,
+    out: &mut Decoded,
+) -> bool {
+    if first & 0x80 != 0 {
+        let name = Name::Def(&ERROR);
+        flags(
+            out,
+            None,
+            name,
+            u32::from(first),
+            &COMMUNICATION_ERROR,
+            place,
+        );
+        note(out, Hart::Line, place);
+        return false;
+    }
+    let words = code_words(command, first);
+    let named = Some(words).filter(|w| !w.is_empty());
+    let value = Value::Named(u32::from(first), named);
+    out.push(None, Name::Def(def), value, place);
+    let (class, _) = class(first);
+    let error = class == Class::Error;
+    if class != Class::Success {
+        let finding = Hart::Code {
+            code: first,
+            words,
+            error,
+        };
+        note(out, finding, place);
+    }
+    !error
 }
 
 /// A field of named bits with one field for each of them.
