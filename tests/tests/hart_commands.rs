@@ -7,6 +7,7 @@ use shared::frame::{Framing, Role, scan};
 use shared::hart::frame::{Head, extended, long_address, preamble, seal};
 use shared::hart::model::{Class, Form};
 use shared::hart::{COMMANDS, class, unit};
+use shared::problem::Problem;
 use shared::text::import;
 use shared::tree::Decoded;
 use std::collections::BTreeSet;
@@ -29,7 +30,7 @@ fn text(tree: &Decoded, path: &str) -> String {
 }
 
 fn codes(tree: &Decoded) -> Vec<&'static str> {
-    tree.problems().iter().map(|p| p.code()).collect()
+    tree.problems().iter().map(Problem::code).collect()
 }
 
 /// Number and role of a sound frame that carries out a command, and its index in the case.
