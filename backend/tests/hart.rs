@@ -399,9 +399,9 @@ async fn the_built_in_loop_has_one_of_each_family() {
         }
     }
     // The list polls each every 5 s.
-    for at in 0..devices.len() {
+    for (at, device) in devices.iter().enumerate() {
         let watch = HartAsk::Watch {
-            device: devices[at].tag.clone(),
+            device: device.tag.clone(),
             commands: vec![plain(3)],
             period_ms: 5000,
         };

@@ -1,11 +1,12 @@
 //! One HART frame to its decode tree.
 
 use super::cause::{Verdict, judge};
+use super::content::{answered, content};
 use super::frame::{Address, Delimiter, Head, PREAMBLE, ROTORK, Type, extended, preamble};
-use super::model::{Bits, Class, Effect, Names};
+use super::model::{Bits, Names};
 use super::payload::{Data, Way};
 use super::problem::Hart;
-use super::{COMMUNICATION_ERROR, DEVICE_STATUS, class, code_words, command};
+use super::{DEVICE_STATUS, command};
 use crate::device::Device;
 use crate::frame::Marks;
 use crate::map::row::Source;
@@ -35,7 +36,6 @@ defs! {
     EXPANSION = "expansion", "Expansion bytes", "expansion bytes";
     COMMAND = "command", "Command", "command";
     COUNT = "byte_count", "Byte count", "byte count";
-    ERROR = "communication_error", "Communication error", "status bytes";
     CODE = "response_code", "Response code", "response codes";
     STATUS = "device_status", "Device status", "status bytes";
     CHECK = "check", "Check byte", "check byte";
@@ -188,52 +188,6 @@ fn data(
     )
 }
 
-/// The data of a command, and what is to be said of it. Unless `open`, its response code lets none
-/// follow.
-pub(super) fn content(
-    mut number: u16,
-    open: bool,
-    reader: &mut Reader<'_>,
-    data: &mut Data<'_>,
-) -> Option<()> {
-    let len = reader.left();
-    // A refusal may still carry the number of an extended command.
-    let numbered = number == 31 && len == 2;
-    if !(open || numbered) {
-        if len > 0 {
-            let len = u16::try_from(len).unwrap_or(u16::MAX);
-            note(data.out, Hart::Unasked { len }, reader.here());
-        }
-        return None;
-    }
-    if number == 31 {
-        number = data.carrier(command(31)?, reader)?;
-    }
-    let whole = reader.here();
-    let Some(command) = command(number) else {
-        note(data.out, Hart::Unknown { number }, whole);
-        return None;
-    };
-    if !open {
-        return None;
-    }
-    data.command(command, reader);
-    if data.way == Way::Request {
-        let effects = command.effects_of(usize::from(whole.len));
-        for effect in effects.iter().copied() {
-            if !matches!(effect, Effect::Reads | Effect::Carries) {
-                note(data.out, Hart::Does { effect }, whole);
-            }
-        }
-    }
-    if let Some(family) = data.family
-        && !command.families.contains(&family)
-    {
-        note(data.out, Hart::NotListed { number }, whole);
-    }
-    Some(())
-}
-
 /// The number that an extended request asks for.
 fn asked_for(request: &[u8]) -> Option<u16> {
     let frame = request.get(preamble(request)..)?;
@@ -258,45 +212,6 @@ fn status(
         place,
     );
     Some(open)
-}
-
-/// The first status byte: a communication error, or a response code as this field. False if no data
-/// follow.
-pub(super) fn answered(
-    command: Option<&'static super::model::Command>,
-    first: u8,
-    def: &'static FieldDef,
-    place: Place,
-    out: &mut Decoded,
-) -> bool {
-    if first & 0x80 != 0 {
-        let name = Name::Def(&ERROR);
-        flags(
-            out,
-            None,
-            name,
-            u32::from(first),
-            &COMMUNICATION_ERROR,
-            place,
-        );
-        note(out, Hart::Line, place);
-        return false;
-    }
-    let words = code_words(command, first);
-    let named = Some(words).filter(|w| !w.is_empty());
-    let value = Value::Named(u32::from(first), named);
-    out.push(None, Name::Def(def), value, place);
-    let (class, _) = class(first);
-    let error = class == Class::Error;
-    if class != Class::Success {
-        let finding = Hart::Code {
-            code: first,
-            words,
-            error,
-        };
-        note(out, finding, place);
-    }
-    !error
 }
 
 /// A field of named bits with one field for each of them.

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::content::{answered, content};
 use super::decode::{inner, named_field, unknown};
 use super::frame::Address;
 use super::payload::{Data, Way};
@@ -223,7 +224,7 @@ fn direct(
                 }
                 continue;
             };
-            open = decode::answered(known, code, &CODE, place, out);
+            open = answered(known, code, &CODE, place, out);
         }
         if missing > 0 {
             unknown(&mut own, out);
@@ -234,7 +235,7 @@ fn direct(
             return None;
         }
         let mut data = Data::new(way, device.family(), out);
-        decode::content(raw, open, &mut own, &mut data);
+        content(raw, open, &mut own, &mut data);
         unknown(&mut own, out);
     }
     Some(())

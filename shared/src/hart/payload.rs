@@ -3,7 +3,7 @@
 use super::decode::{flags, note};
 use super::model::{Command, Item, Kind, Names, Part, form};
 use super::problem::Hart;
-use super::shape::{longest, nearest, width};
+use super::shape::{class_ahead, is_class, longest, nearest, width};
 use super::values::{Real, clock, is_date, real, unpack};
 use super::{DEVICE_VARIABLE, ROTORK_VARIABLE, additional, unit};
 use crate::device::Family;
@@ -83,7 +83,7 @@ impl<'o> Data<'o> {
             return;
         }
         let before = reader.here();
-        self.class = ahead(form.items, reader.rest());
+        self.class = class_ahead(form.items, reader.rest());
         let group = self
             .out
             .push(None, Name::HartCommand(command), Value::Group, before);
@@ -377,18 +377,6 @@ impl<'o> Data<'o> {
         }
         self.out.say(id, words.join(", "));
     }
-}
-
-/// The classification that stands behind its unit, as in command 54; 0 if there is none.
-fn ahead(items: &'static [Item], bytes: &[u8]) -> u8 {
-    let at = items.iter().position(is_class);
-    let offset = at.map(|at| items.iter().take(at).map(width).sum());
-    let class = offset.and_then(|offset: usize| bytes.get(offset));
-    class.copied().unwrap_or(0)
-}
-
-fn is_class(item: &Item) -> bool {
-    matches!(item.kind, Kind::Named(_, names) if core::ptr::eq(names, &super::CLASSIFICATION))
 }
 
 const fn plain(number: u32) -> Value {
