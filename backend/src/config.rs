@@ -387,7 +387,7 @@ impl Config {
                     turnaround: Duration::ZERO,
                 },
                 ddc::simulated(),
-                HartConfig::of(hart::HartWay::Simulated).bus(hart::SIMULATED),
+                hart::simulated_bus(),
             ],
             devices,
         }

@@ -84,9 +84,13 @@ impl Plant {
                 framing: bus.line.framing().key().into(),
                 simulated,
             };
-            if bus.line.hart().is_some() {
+            if let Some(hart) = bus.line.hart() {
                 let plug = if bus.line.is_simulated() {
-                    Plug::Loop(sim::hart::Loop::of(&own, clock))
+                    let made = sim::hart::Loop::of(&own, clock);
+                    if hart.faulty {
+                        made.spoil();
+                    }
+                    Plug::Loop(made)
                 } else {
                     Plug::Configured
                 };

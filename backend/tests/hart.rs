@@ -352,6 +352,99 @@ async fn a_watch_goes_at_the_rate_of_the_line() {
     assert!(client.news.try_recv().is_err());
 }
 
+/// The loop of the built-in plant: one device of each family, two of which have something to report,
+/// and each of them is read as often as the list of all devices asks for it.
+#[tokio::test(start_paused = true)]
+async fn the_built_in_loop_has_one_of_each_family() {
+    let config = Config::simulated();
+    let at = config.buses.iter().position(|b| b.line.hart().is_some());
+    let bus = config.buses[at.unwrap()].clone();
+    let devices: Vec<DeviceConfig> = config.on(&bus).cloned().collect();
+    let found: Vec<_> = devices
+        .iter()
+        .map(|d| (d.unit, d.tag.as_str(), d.device.family().unwrap()))
+        .collect();
+    let by_hand = [
+        (0, "FV-401", Family::Iq),
+        (1, "FV-402", Family::Cva),
+        (2, "FV-403", Family::Cma),
+        (3, "FV-404", Family::Ck),
+        (4, "FV-405", Family::Si),
+    ];
+    assert_eq!(found, by_hand);
+    assert!(devices.iter().all(|d| d.description.contains("valve")));
+    assert!(bus.line.hart().unwrap().faulty);
+    let handle = start(bus, &devices, |clock| {
+        let made = Loop::of(&devices, clock);
+        made.spoil();
+        Plug::Loop(made)
+    });
+    let mut client = Client::of(&handle, 1);
+    for (at, (_, _, family)) in by_hand.into_iter().enumerate() {
+        let (news, ok, ..) = client.read(at, vec![plain(48)]).await;
+        assert_eq!(ok, 1, "{family:?}");
+        let (.., response, _) = exchange(&news[0]);
+        let byte = |at: usize| u8::from_str_radix(&response[2 * at..2 * at + 2], 16).unwrap();
+        // Delimiter, address, command, count; then code, device status, and the nine bytes.
+        let (status, own): (u8, Vec<u8>) = (byte(9), (10..19).map(byte).collect());
+        match family {
+            // Over-temperature is byte 0 bit 7 (table 9); out of specification is 10h (table 5).
+            Family::Cma => {
+                assert_eq!((own[0] & 0x80, own[6]), (0x80, 0x10));
+                assert_eq!(status & 0x90, 0x10, "more status, and no malfunction");
+            }
+            // Digital input 1 is byte 5 bit 4 (table 11), a plain state.
+            Family::Si => assert_eq!((own[5], own[6], status & 0x90), (0x10, 0, 0)),
+            _ => assert_eq!((&own[..4], own[6], status & 0x90), (&[0; 4][..], 0, 0)),
+        }
+    }
+    // The list polls each every 5 s.
+    for (at, device) in devices.iter().enumerate() {
+        let watch = HartAsk::Watch {
+            device: device.tag.clone(),
+            commands: vec![plain(3)],
+            period_ms: 5000,
+        };
+        client.ask(Some(at), watch).await;
+    }
+    let mut counts = [0; 5];
+    let until = Instant::now() + Duration::from_secs(300);
+    while Instant::now() < until {
+        if let HartNews::Exchange {
+            device, outcome, ..
+        } = client.hear().await
+        {
+            assert_eq!(outcome, Outcome::Ok);
+            let at = devices.iter().position(|d| d.tag == device);
+            counts[at.unwrap()] += 1;
+        }
+    }
+    println!("reads of the five in 300 s: {counts:?}");
+    assert!(counts.iter().all(|c| (58..=61).contains(c)), "{counts:?}");
+    // One that is watched alone beside them, as fast as it goes, gets most of what they leave: the
+    // five need 3 s of 5.
+    let watch = HartAsk::Watch {
+        device: devices[0].tag.clone(),
+        commands: vec![plain(3)],
+        period_ms: 100,
+    };
+    client.ask(Some(0), watch).await;
+    let mut counts = [0; 5];
+    let until = Instant::now() + Duration::from_secs(300);
+    while Instant::now() < until {
+        if let HartNews::Exchange { device, .. } = client.hear().await {
+            let at = devices.iter().position(|d| d.tag == device);
+            counts[at.unwrap()] += 1;
+        }
+    }
+    println!("with the first as fast as it goes: {counts:?}");
+    assert!(counts[0] > 200, "{counts:?}");
+    assert!(
+        counts[1..].iter().all(|c| (58..=61).contains(c)),
+        "{counts:?}"
+    );
+}
+
 /// Beside a control system and a bursting neighbour: all of them come to speak, none is hit by us,
 /// and the page is told of them.
 #[tokio::test(start_paused = true)]

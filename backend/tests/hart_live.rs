@@ -3,6 +3,7 @@
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Output, Stdio};
+use std::time::Instant;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_valvescope");
 /// Eight times as fast as a real line.
@@ -152,6 +153,44 @@ fn troubles_of_the_line_are_survived() {
     let answer = responses(&lines)[0];
     // Busy is an answer.
     assert_eq!(field(answer, "response_code")["value"], 32, "{answer}");
+}
+
+/// The rate of a line at real pace, between two processes. It is printed and not judged: a busy
+/// machine is late. In simulated time it is held by `polling_reaches_the_rate_of_the_line` of the
+/// link layer and by `a_watch_goes_at_the_rate_of_the_line`.
+#[test]
+fn the_rate_of_command_3_is_measured() {
+    const READS: usize = 16;
+    let device = Simulated::start(REAL, &["--device", "rotork-iq"]);
+    let mut reader = Command::new(PROGRAM)
+        .args(["hart", "read", "--port", &device.path, "--format", "json"])
+        .args(["--master", "primary"])
+        .args(["3"; READS])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let lines = BufReader::new(reader.stdout.take().unwrap()).lines();
+    // Each line comes when its exchange is over.
+    let mut moments = Vec::new();
+    for line in lines {
+        let line: Value = serde_json::from_str(&line.unwrap()).unwrap();
+        if line["role"] == "response" && line["command"] == 3 {
+            moments.push(Instant::now());
+        }
+    }
+    assert!(reader.wait().unwrap().success());
+    assert_eq!(moments.len(), READS);
+    let took = moments[READS - 1] - moments[0];
+    let each = took.as_secs_f64() * 1000.0 / (READS - 1) as f64;
+    // 66 characters of 11 bits: RT2, request, turn of the device, reply.
+    let ideal = 66.0 * 11.0 * 1000.0 / 1200.0;
+    println!(
+        "command 3 at 1200 bit/s: {each:.1} ms each, ideal {ideal:.1} ms, {:.1} % of the line",
+        ideal / each * 100.0
+    );
+    // Nobody can be faster than the line; timers of the machine are a little apart.
+    assert!(each > ideal - 10.0, "{each} ms");
 }
 
 #[test]

@@ -35,7 +35,7 @@ macro_rules! file {
     };
 }
 /// The case files with their blessed JSON lines.
-pub const FILES: [(&str, &str, &str); 8] = [
+pub const FILES: [(&str, &str, &str); 9] = [
     file!("icon3000-manual"),
     file!("icon3000-values"),
     file!("icon3000-files"),
@@ -44,6 +44,7 @@ pub const FILES: [(&str, &str, &str); 8] = [
     file!("modbus-application"),
     file!("bad-input"),
     file!("hart-frames"),
+    file!("hart-commands"),
 ];
 
 /// One case.

@@ -218,7 +218,7 @@ fn readings_are_complete() {
         |prefix: &'static str, last: u32| (1..=last).map(move |n| format!("{prefix}{n}"));
     for id in numbered("R", 44)
         .chain(numbered("H", 36))
-        .chain(numbered("G", 23))
+        .chain(numbered("G", 25))
     {
         assert!(shared::hart::reading(&id).is_some(), "{id}");
     }
@@ -278,7 +278,52 @@ fn exports_name_their_sources() {
             Family::Si => 13,
         };
         assert_eq!(own.count(), expected, "{family:?}");
-        assert!(kinds["unit"] > 170 && kinds["code"] > 200, "{kinds:?}");
+        // 172 codes without and 133 with a classification.
+        assert!(kinds["unit"] > 300 && kinds["code"] > 200, "{kinds:?}");
+        // Response codes are told apart by class, and none from 0 to 127 is left out.
+        let lines = |kind: &str| -> Vec<serde_json::Value> {
+            let all = text.lines().map(|l| serde_json::from_str(l).unwrap());
+            all.filter(|l: &serde_json::Value| l["kind"] == kind)
+                .collect()
+        };
+        let mut next = 0;
+        for line in lines("response_code") {
+            assert_eq!(line["first"], next, "{line}");
+            next = line["last"].as_u64().unwrap() + 1;
+        }
+        assert_eq!(next, 128);
+        let timers = lines("timer");
+        assert_eq!(timers.len(), 6);
+        assert_eq!(
+            (
+                &timers[0]["label"],
+                &timers[0]["characters"],
+                &timers[0]["micros"]
+            ),
+            (&"STO".into(), &28.into(), &256_666.into())
+        );
+        // Tables 20, 23 and 25; CVA and CMA have no example.
+        let presets = lines("preset");
+        let count = match family {
+            Family::Iq | Family::Si => 8,
+            Family::Ck => 7,
+            Family::Cva | Family::Cma => 0,
+        };
+        assert_eq!(presets.len(), count, "{family:?}");
+        // Local control fault, byte 0 bit 1, is a failure in each of them: index 8 + 1.
+        if let Some(preset) = presets.first() {
+            assert_eq!(
+                (
+                    &preset["index"],
+                    &preset["category"],
+                    &preset["category_label"]
+                ),
+                (&9.into(), &3.into(), &"Failure".into())
+            );
+        }
+        for set in ["lock_device", "lock_status"] {
+            assert!(text.contains(&format!(r#""set":"{set}""#)), "{set}");
+        }
     }
 }
 

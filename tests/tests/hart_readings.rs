@@ -7,7 +7,9 @@ use shared::frame::{Framing, scan};
 use shared::hart::frame::{Head, ROTORK, long_address, seal};
 use shared::hart::model::{Class, Effect};
 use shared::hart::ne107::{Map, report};
-use shared::hart::{ADDITIONAL, PRESETS, READINGS, TIMERS, class, code_words, command, reading};
+use shared::hart::{
+    ADDITIONAL, PRESETS, READINGS, TIMERS, class, code_words, command, reading, unit,
+};
 use shared::map::row::Settled;
 use shared::tree::Decoded;
 use shared::value::Value;
@@ -92,7 +94,7 @@ fn named_by(number: u16) -> BTreeSet<&'static str> {
 }
 
 /// All readings in the order of the tables.
-const HELD: [(&str, Held); 103] = [
+const HELD: [(&str, Held); 105] = [
     (
         "R1",
         By(|| assert_eq!(bit(Family::Cva, 0, 7).unwrap().0, "over_back_drive_close")),
@@ -434,7 +436,7 @@ const HELD: [(&str, Held); 103] = [
     ("R42", By(|| assert!(!families(34).contains(&Family::Cma)))),
     (
         "R43",
-        Because("what the device does; held with the simulated one"),
+        Because("what the device does; `hart_device.rs` has the simulated one at 3 mA"),
     ),
     (
         "R44",
@@ -516,9 +518,15 @@ const HELD: [(&str, Held); 103] = [
     ("H18", Because("the same as R37")),
     (
         "H19",
-        Because("what the device does; held with the simulated one at 3.5 and 20.5 mA"),
+        Because(
+            "what the device does; `hart_device.rs` has the simulated one at 3.49, 3.51, 20.49 and \
+             20.51 mA",
+        ),
     ),
-    ("H20", Because("the same point as H19, in percent")),
+    (
+        "H20",
+        Because("the same point as H19, where the percentage is looked at too"),
+    ),
     ("H21", Because("the same as R27")),
     (
         "H22",
@@ -708,11 +716,25 @@ const HELD: [(&str, Held); 103] = [
     (
         "G13",
         By(|| {
-            for date in [[0, 0, 0], [31, 13, 100], [0, 1, 100]] {
+            let shown = |date: [u8; 3]| {
                 let data = [&[0x82; 18][..], &date].concat();
-                let shown = text(&reply(13, &data, Family::Iq), "command.13.date");
-                assert!(shown.contains("no date set"), "{shown}");
+                text(&reply(13, &data, Family::Iq), "command.13.date")
+            };
+            // 31 April, 30 February, and 29 February of 2023, 1900 and 2100.
+            for date in [
+                [0, 0, 0],
+                [31, 13, 100],
+                [0, 1, 100],
+                [31, 4, 124],
+                [30, 2, 124],
+                [29, 2, 123],
+                [29, 2, 0],
+                [29, 2, 200],
+            ] {
+                assert!(shown(date).contains("no date set"), "{date:?}");
             }
+            assert_eq!(shown([29, 2, 124]), "2024-02-29");
+            assert_eq!(shown([31, 12, 255]), "2155-12-31");
         }),
     ),
     (
@@ -822,6 +844,29 @@ const HELD: [(&str, Held); 103] = [
                 );
                 assert!(named_by(number).contains("G23"), "{number}");
             }
+        }),
+    ),
+    (
+        "G24",
+        By(|| {
+            let symbol = |code, class| unit(code, class).map(|u| u.symbol);
+            assert_eq!(symbol(170, 65), Some("cmH2O (4 °C)"));
+            assert_eq!(symbol(170, 97), Some("FNU"));
+            // The second unit of this classification has no code that two lines agree on.
+            assert_eq!((symbol(170, 108), symbol(171, 108)), (Some("kJ/L"), None));
+        }),
+    ),
+    (
+        "G25",
+        By(|| {
+            let mut data = vec![1, 101, 7];
+            data.extend([0; 12]);
+            data.extend([0, 250, 0]);
+            let shown = text(
+                &reply(15, &data, Family::Iq),
+                "command.15.transfer_function",
+            );
+            assert_eq!(shown, "Conical or pyramidal bottom tank (101)");
         }),
     ),
 ];

@@ -38,6 +38,8 @@ pub struct HartConfig {
     pub preambles: Option<u8>,
     /// Longest silence within a frame, as the port delivers it; `None` for what is usual.
     pub gap: Option<Duration>,
+    /// Of a simulated loop: some of its devices have something to report.
+    pub faulty: bool,
 }
 
 /// Where a HART line goes.
@@ -121,6 +123,7 @@ impl HartConfig {
             primary: true,
             preambles: None,
             gap: None,
+            faulty: false,
         }
     }
 
@@ -435,11 +438,17 @@ pub(super) fn loops(config: &mut Config) {
 }
 
 /// The simulated loop of the built-in plant.
-pub(super) const SIMULATED: &str = "Simulated HART loop";
+pub(super) fn simulated_bus() -> BusConfig {
+    HartConfig {
+        faulty: true,
+        ..HartConfig::of(HartWay::Simulated)
+    }
+    .bus("Simulated HART loop")
+}
 
-/// Its devices, on this bus.
-pub(super) fn simulated(bus: usize) -> [DeviceConfig; 2] {
-    let device = |tag: &str, family, unit, description: &str| DeviceConfig {
+/// Its devices, on this bus: one of each family.
+pub(super) fn simulated(bus: usize) -> [DeviceConfig; 5] {
+    let device = |unit, tag: &str, family, description: &str| DeviceConfig {
         tag: tag.into(),
         device: Device::Rotork(family),
         bus,
@@ -450,11 +459,14 @@ pub(super) fn simulated(bus: usize) -> [DeviceConfig; 2] {
     };
     [
         device(
+            0,
             "FV-401",
             Family::Iq,
-            0,
             "Cooling water return, control valve",
         ),
-        device("FV-402", Family::Cva, 1, "Reactor feed, control valve"),
+        device(1, "FV-402", Family::Cva, "Reactor feed, control valve"),
+        device(2, "FV-403", Family::Cma, "Steam to reboiler, control valve"),
+        device(3, "FV-404", Family::Ck, "Wash water, control valve"),
+        device(4, "FV-405", Family::Si, "Fuel gas, spring-return valve"),
     ]
 }

@@ -3,7 +3,9 @@
 use crate::clock::Clock;
 use crate::config::DeviceConfig;
 use shared::capture::Micros;
+use shared::device::Family;
 use shared::hart::link::BAUD;
+use shared::hart::ne107::Map;
 use shared::sim::Programme;
 use shared::sim::hart::{Collision, HartDevice, HartLine, HartSetup};
 use std::io;
@@ -14,6 +16,19 @@ use tokio::time::sleep_until;
 
 /// A loop without anything to do is looked at so often, so that its valves move.
 const IDLE: Duration = Duration::from_millis(200);
+
+/// A condensed status map for a CMA, of which the manual has no example: byte, bit and category.
+const CMA_MAP: [(u8, u8, u8); 5] = [
+    // General fault and critical fault: failure.
+    (0, 0, 3),
+    (1, 1, 3),
+    // Over-temperature: out of specification.
+    (0, 7, 4),
+    // Monitor relay: function check.
+    (1, 2, 5),
+    // Non-critical fault: maintenance required.
+    (3, 7, 1),
+];
 
 /// The devices of one loop. Clones are the same loop.
 #[derive(Clone, Debug)]
@@ -47,6 +62,26 @@ impl Loop {
             Some(HartDevice::new(&d.tag, setup))
         });
         Self::new(HartLine::new(BAUD, devices.collect()), clock)
+    }
+
+    /// Gives some of its devices something to report: a CMA an alarm and a condensed status map that
+    /// makes it out of specification, an SI a digital input.
+    pub fn spoil(&self) {
+        let mut line = self.line.lock().unwrap_or_else(PoisonError::into_inner);
+        for device in line.devices_mut() {
+            match device.setup().family {
+                Family::Cma => {
+                    for (byte, bit, category) in CMA_MAP {
+                        device.set_category(Map::index(byte, bit), category);
+                    }
+                    device.inject("over_temperature", true);
+                }
+                Family::Si => {
+                    device.inject("digital_input_1", true);
+                }
+                Family::Cva | Family::Iq | Family::Ck => {}
+            }
+        }
     }
 
     /// Whoever sent at the same time as another; party 0 is our end.

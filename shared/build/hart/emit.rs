@@ -123,11 +123,12 @@ impl Emitter<'_> {
         for (_, c) in &data.responses {
             writeln!(
                 out,
-                "    Codes {{ first: {}, last: {}, class: Class::{}, label: {:?} }},",
+                "    Codes {{ first: {}, last: {}, class: Class::{}, label: {:?}, reading: {} }},",
                 c.first,
                 c.last,
                 variant(&c.class),
-                c.label
+                c.label,
+                self.reading(&c.reading)
             )?;
         }
         let count = data.timers.len();

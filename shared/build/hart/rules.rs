@@ -25,8 +25,8 @@ use super::data::{Command, Data, Field, Form, Forms, Kind, Sourced};
 use crate::rules::Findings;
 use crate::types::{At, Doc, Problem, SETTLED};
 
-/// Sets that only the code uses.
-pub const BY_CODE: [&str; 10] = [
+/// Sets that only the code uses, and those that are printed for whoever needs them.
+pub const BY_CODE: [&str; 12] = [
     "communication_error",
     "device_status",
     "device_variable",
@@ -37,6 +37,8 @@ pub const BY_CODE: [&str; 10] = [
     "hart_ip_message_id",
     "hart_ip_status",
     "hart_ip_master",
+    "lock_device",
+    "lock_status",
 ];
 /// The set that the manufacturers make up.
 pub const MAKERS: &str = "manufacturer";

@@ -1,11 +1,12 @@
 //! One HART frame to its decode tree.
 
 use super::cause::{Verdict, judge};
+use super::content::{answered, content};
 use super::frame::{Address, Delimiter, Head, PREAMBLE, ROTORK, Type, extended, preamble};
-use super::model::{Bits, Class, Effect, Names};
+use super::model::{Bits, Names};
 use super::payload::{Data, Way};
 use super::problem::Hart;
-use super::{COMMUNICATION_ERROR, DEVICE_STATUS, class, code_words, command};
+use super::{DEVICE_STATUS, command};
 use crate::device::Device;
 use crate::frame::Marks;
 use crate::map::row::Source;
@@ -35,7 +36,6 @@ defs! {
     EXPANSION = "expansion", "Expansion bytes", "expansion bytes";
     COMMAND = "command", "Command", "command";
     COUNT = "byte_count", "Byte count", "byte count";
-    ERROR = "communication_error", "Communication error", "status bytes";
     CODE = "response_code", "Response code", "response codes";
     STATUS = "device_status", "Device status", "status bytes";
     CHECK = "check", "Check byte", "check byte";
@@ -165,65 +165,27 @@ fn data(
     device: Device,
     out: &mut Decoded,
 ) -> Option<()> {
-    let mut command = command(u16::from(head.command));
-    let family = device.family();
+    let number = u16::from(head.command);
     let mut open = true;
     if way == Way::Response {
         // A refusal of an extended command may leave its number out; the request has it.
-        let number = reader.rest().get(2..4).and_then(|n| n.try_into().ok());
-        let number = number
+        let inner = reader.rest().get(2..4).and_then(|n| n.try_into().ok());
+        let inner = inner
             .map(u16::from_be_bytes)
-            .or_else(|| asked_for(request?));
-        if head.command == 31
-            && let Some(inner) = number.and_then(super::command)
-        {
-            command = Some(inner);
-        }
-        open = status(command, reader, out)?;
+            .or_else(|| asked_for(request?))
+            .filter(|_| number == 31);
+        open = status(
+            inner.and_then(command).or_else(|| command(number)),
+            reader,
+            out,
+        )?;
     }
-    let len = reader.left();
-    // A refusal may still carry the number of an extended command.
-    let numbered = head.command == 31 && len == 2;
-    if !(open || numbered) {
-        if len > 0 {
-            let len = u16::try_from(len).unwrap_or(u16::MAX);
-            note(out, Hart::Unasked { len }, reader.here());
-        }
-        return None;
-    }
-    let mut data = Data::new(way, family, out);
-    if head.command == 31 {
-        let carrier = super::command(31)?;
-        let number = data.carrier(carrier, reader)?;
-        command = super::command(number);
-        if command.is_none() {
-            note(data.out, Hart::Unknown { number }, reader.here());
-        }
-        if !open {
-            return None;
-        }
-    } else if command.is_none() {
-        let number = u16::from(head.command);
-        note(data.out, Hart::Unknown { number }, reader.here());
-    }
-    let command = command?;
-    let whole = reader.here();
-    data.command(command, reader);
-    if way == Way::Request {
-        let effects = command.effects_of(usize::from(whole.len));
-        for effect in effects.iter().copied() {
-            if !matches!(effect, Effect::Reads | Effect::Carries) {
-                note(data.out, Hart::Does { effect }, whole);
-            }
-        }
-    }
-    if let Some(family) = family
-        && !command.families.contains(&family)
-    {
-        let number = command.number;
-        note(data.out, Hart::NotListed { number }, whole);
-    }
-    Some(())
+    content(
+        number,
+        open,
+        reader,
+        &mut Data::new(way, device.family(), out),
+    )
 }
 
 /// The number that an extended request asks for.
@@ -239,34 +201,7 @@ fn status(
     out: &mut Decoded,
 ) -> Option<bool> {
     let (first, place) = reader.u8()?;
-    let open = if first & 0x80 != 0 {
-        flags(
-            out,
-            None,
-            Name::Def(&ERROR),
-            u32::from(first),
-            &COMMUNICATION_ERROR,
-            place,
-        );
-        note(out, Hart::Line, place);
-        false
-    } else {
-        let words = code_words(command, first);
-        let named = Some(words).filter(|w| !w.is_empty());
-        let value = Value::Named(u32::from(first), named);
-        out.push(None, Name::Def(&CODE), value, place);
-        let (class, _) = class(first);
-        let error = class == Class::Error;
-        if class != Class::Success {
-            let finding = Hart::Code {
-                code: first,
-                words,
-                error,
-            };
-            note(out, finding, place);
-        }
-        !error
-    };
+    let open = answered(command, first, &CODE, place, out);
     let (second, place) = reader.u8()?;
     flags(
         out,

@@ -1,11 +1,16 @@
 //! Everything that is known of a family, one JSON object a line: commands with their fields,
-//! status bits, names of codes, units.
+//! status bits, names of codes, units, response codes, times of the link, examples of the condensed
+//! status map.
 
 use core::fmt::{self, Write};
 
 use super::model::{Bits, Command, Form, Item, Kind};
+use super::ne107::Map;
 use super::shape::width;
-use super::{ADDITIONAL, BITS_SETS, COMMANDS, ENUM_SETS, MANUFACTURER, UNITS, UNITS_SOURCE};
+use super::{
+    ADDITIONAL, BITS_SETS, CODES, COMMANDS, CONDENSED_STATUS, ENUM_SETS, MANUFACTURER, PRESETS,
+    RESPONSE_CODES_SOURCE, TIMERS, TIMERS_SOURCE, UNITS, UNITS_SOURCE,
+};
 use crate::device::Family;
 use crate::json::Quoted;
 use crate::map::row::{Reading, Source, Trust};
@@ -65,7 +70,75 @@ pub fn write(out: &mut impl Write, family: Family) -> fmt::Result {
         };
         write!(out, r#","text":{}"#, Quoted(text))?;
         write_source(out, UNITS_SOURCE)?;
+        // What depends on a classification rests on this one.
+        let why = super::reading("G24").filter(|_| unit.class != 0);
+        write_readings(out, why.as_slice())?;
         out.write_str("}\n")?;
+    }
+    write_codes(out, family)?;
+    write_timers(out, family)?;
+    write_presets(out, family)
+}
+
+/// Response codes by class, with what they mean for every command.
+fn write_codes(out: &mut impl Write, family: Family) -> fmt::Result {
+    for codes in &CODES {
+        write!(
+            out,
+            r#"{{"device":"{}","kind":"response_code","first":{},"last":{},"class":"{}","label":{}"#,
+            family.key(),
+            codes.first,
+            codes.last,
+            codes.class.key(),
+            Quoted(codes.label)
+        )?;
+        write_source(out, RESPONSE_CODES_SOURCE)?;
+        write_readings(out, codes.reading.as_slice())?;
+        out.write_str("}\n")?;
+    }
+    Ok(())
+}
+
+/// Times of the link.
+fn write_timers(out: &mut impl Write, family: Family) -> fmt::Result {
+    for timer in &TIMERS {
+        write!(
+            out,
+            r#"{{"device":"{}","kind":"timer","key":"{}","label":{},"characters":{},"micros":{},"note":{}"#,
+            family.key(),
+            timer.key,
+            Quoted(timer.label),
+            timer.characters,
+            timer.micros(),
+            Quoted(timer.note)
+        )?;
+        write_source(out, TIMERS_SOURCE)?;
+        write_readings(out, timer.reading.as_slice())?;
+        out.write_str("}\n")?;
+    }
+    Ok(())
+}
+
+/// What the manual's example of the condensed status map for this family maps.
+fn write_presets(out: &mut impl Write, family: Family) -> fmt::Result {
+    for preset in PRESETS.iter().filter(|p| p.family == family) {
+        for bit in preset.bits {
+            write!(
+                out,
+                r#"{{"device":"{}","kind":"preset","key":"{}","label":{},"byte":{},"bit":{},"index":{},"category":{},"category_label":{}"#,
+                family.key(),
+                preset.key,
+                Quoted(preset.label),
+                bit.byte,
+                bit.bit,
+                Map::index(bit.byte, bit.bit),
+                bit.category,
+                Quoted(CONDENSED_STATUS.name(bit.category.into()).unwrap_or(""))
+            )?;
+            write_source(out, bit.source)?;
+            write_readings(out, bit.reading.as_slice())?;
+            out.write_str("}\n")?;
+        }
     }
     Ok(())
 }

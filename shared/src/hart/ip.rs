@@ -2,14 +2,14 @@
 
 use core::fmt;
 
-use super::decode::{inner, named_field, note, unknown};
+use super::content::{answered, content};
+use super::decode::{inner, named_field, unknown};
 use super::frame::Address;
 use super::payload::{Data, Way};
-use super::problem::Hart;
 use super::who::{identity, write_head};
 use super::{
     DEVICE_STATUS, EXTENDED_DEVICE_STATUS, HART_IP_MASTER, HART_IP_MESSAGE_ID,
-    HART_IP_MESSAGE_TYPE, HART_IP_STATUS, code_words, command, decode,
+    HART_IP_MESSAGE_TYPE, HART_IP_STATUS, command, decode,
 };
 use crate::device::Device;
 use crate::frame::{Found, Marks, Role, View};
@@ -143,13 +143,12 @@ pub(crate) fn message(bytes: &[u8], request: Option<&[u8]>, device: Device, out:
                 return;
             }
             DIRECT => {
-                direct(header, &mut reader, device, out);
+                direct(header, missing == 0, &mut reader, device, out);
             }
             _ => {}
         }
         if missing > 0 {
-            let place = Place::new(bytes.len(), 0);
-            out.problem(Problem::new(Finding::Truncated { missing }, place));
+            cut(missing.into(), Place::new(bytes.len(), 0), out);
         }
     }
     unknown(&mut reader, out);
@@ -187,9 +186,10 @@ fn session(reader: &mut Reader<'_>, out: &mut Decoded) -> Option<()> {
     Some(())
 }
 
-/// Commands one after the other, without the frames around them.
+/// Commands one after the other, without the frames around them; `whole` if the message is.
 fn direct(
     header: Header,
+    whole: bool,
     reader: &mut Reader<'_>,
     device: Device,
     out: &mut Decoded,
@@ -212,21 +212,38 @@ fn direct(
         out.push(None, Name::Def(&NUMBER), value, place);
         let (count, place) = reader.u8()?;
         number(&COUNT, i64::from(count), place, out);
-        let mut own = reader.sub(usize::from(count))?;
-        if way == Way::Response
-            && let Some((code, place)) = own.u8()
-        {
-            let words = Some(code_words(known, code)).filter(|w| !w.is_empty());
-            let value = Value::Named(u32::from(code), words);
-            out.push(None, Name::Def(&CODE), value, place);
+        let want = usize::from(count);
+        let missing = want.saturating_sub(reader.left());
+        let mut own = reader.sub(want.min(reader.left()))?;
+        let mut open = true;
+        if way == Way::Response {
+            let Some((code, place)) = own.u8() else {
+                // At least the response code; what the message itself lacks is said there.
+                if whole {
+                    cut(missing.max(1), own.here(), out);
+                }
+                continue;
+            };
+            open = answered(known, code, &CODE, place, out);
         }
-        match known {
-            Some(command) => Data::new(way, device.family(), out).command(command, &mut own),
-            None => note(out, Hart::Unknown { number: raw }, own.here()),
+        if missing > 0 {
+            unknown(&mut own, out);
+            // What the message itself lacks is said there.
+            if whole {
+                cut(missing, reader.here(), out);
+            }
+            return None;
         }
+        let mut data = Data::new(way, device.family(), out);
+        content(raw, open, &mut own, &mut data);
         unknown(&mut own, out);
     }
     Some(())
+}
+
+fn cut(missing: usize, place: Place, out: &mut Decoded) {
+    let missing = u16::try_from(missing).unwrap_or(u16::MAX);
+    out.problem(Problem::new(Finding::Truncated { missing }, place));
 }
 
 /// The frame inside a message, from its delimiter on, if it carries one.

@@ -13,6 +13,7 @@
 //! a decoded frame tile its bytes.
 
 mod cause;
+mod content;
 pub(crate) mod decode;
 mod effect;
 pub mod export;

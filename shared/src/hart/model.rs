@@ -167,6 +167,8 @@ pub struct Codes {
     pub class: Class,
     /// What they mean for every command; empty if each command has its own meaning.
     pub label: &'static str,
+    /// What that rests on where it is no print.
+    pub reading: Option<&'static Reading>,
 }
 
 /// One field of the data, or a field of the device's status.

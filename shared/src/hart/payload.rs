@@ -3,8 +3,8 @@
 use super::decode::{flags, note};
 use super::model::{Command, Item, Kind, Names, Part, form};
 use super::problem::Hart;
-use super::shape::{longest, nearest, width};
-use super::values::{Real, clock, real, unpack};
+use super::shape::{class_ahead, is_class, longest, nearest, width};
+use super::values::{Real, clock, is_date, real, unpack};
 use super::{DEVICE_VARIABLE, ROTORK_VARIABLE, additional, unit};
 use crate::device::Family;
 use crate::place::Place;
@@ -26,8 +26,8 @@ pub(super) enum Way {
 
 /// Reads the data of one frame.
 pub(super) struct Data<'o> {
-    way: Way,
-    family: Option<Family>,
+    pub(super) way: Way,
+    pub(super) family: Option<Family>,
     pub(super) out: &'o mut Decoded,
     /// The last unit code, for the values behind it.
     unit: Option<u8>,
@@ -83,6 +83,7 @@ impl<'o> Data<'o> {
             return;
         }
         let before = reader.here();
+        self.class = class_ahead(form.items, reader.rest());
         let group = self
             .out
             .push(None, Name::HartCommand(command), Value::Group, before);
@@ -165,7 +166,7 @@ impl<'o> Data<'o> {
                 self.out.push(parent, name, Value::Text, place);
             }
             Kind::Named(_, names) => {
-                if core::ptr::eq(names, &super::CLASSIFICATION) {
+                if is_class(item) {
                     self.class = low;
                 }
                 let (value, quality) = named(names, number);
@@ -184,9 +185,12 @@ impl<'o> Data<'o> {
                         u.symbol
                     }
                 });
-                let own = (240..=249)
-                    .contains(&low)
-                    .then_some("manufacturer specific");
+                // Reading G24: 170 to 219 mean nothing without a classification.
+                let own = match low {
+                    170..=219 if self.class == 0 => Some("depends on the classification"),
+                    240..=249 => Some("manufacturer specific"),
+                    _ => None,
+                };
                 let value = Value::Named(number, words.or(own));
                 self.out.push(parent, name, value, place);
             }
@@ -271,7 +275,7 @@ impl<'o> Data<'o> {
     /// Reading G13: zeros and impossible dates mean that none was set.
     fn date(&mut self, name: Name, bytes: &[u8], place: Place, parent: Option<FieldId>) {
         let value = match *bytes {
-            [day @ 1..=31, month @ 1..=12, year] => Value::Date {
+            [day, month, year] if is_date(day, month, year) => Value::Date {
                 year: u16::from(year).saturating_add(1900),
                 month,
                 day,

@@ -1,4 +1,4 @@
-//! Sizes of fields and forms.
+//! Sizes of fields and forms, and where things stand in them.
 
 use super::model::{Form, Item, Kind};
 
@@ -31,4 +31,17 @@ pub(super) fn nearest(forms: &'static [Form], got: u16) -> u16 {
 /// The form with the most bytes.
 pub(super) fn longest(forms: &'static [Form]) -> Option<&'static Form> {
     forms.iter().max_by_key(|f| f.lengths.first())
+}
+
+/// The classification that stands behind its unit, as in command 54; 0 if there is none.
+pub(super) fn class_ahead(items: &'static [Item], bytes: &[u8]) -> u8 {
+    let at = items.iter().position(is_class);
+    let offset = at.map(|at| items.iter().take(at).map(width).sum());
+    let class = offset.and_then(|offset: usize| bytes.get(offset));
+    class.copied().unwrap_or(0)
+}
+
+/// True for a classification.
+pub(super) fn is_class(item: &Item) -> bool {
+    matches!(item.kind, Kind::Named(_, names) if core::ptr::eq(names, &super::CLASSIFICATION))
 }

@@ -76,6 +76,20 @@ pub fn real(bits: u32) -> Real {
     }
 }
 
+/// True for a day that exists; the year counts from 1900.
+#[must_use]
+pub const fn is_date(day: u8, month: u8, year: u8) -> bool {
+    let last = match month {
+        // 1900 had no 29 February, 2000 had one, and 2100 has none.
+        2 if year.is_multiple_of(4) && year != 0 && year != 200 => 29,
+        2 => 28,
+        4 | 6 | 9 | 11 => 30,
+        1..=12 => 31,
+        _ => 0,
+    };
+    day >= 1 && day <= last
+}
+
 /// A time of 1/32 ms in words: `15:17:29.482`, with days in front where it has any.
 #[must_use]
 pub fn clock(ticks: u32) -> String {
@@ -131,6 +145,38 @@ mod tests {
         assert_eq!(real(0xFFC0_0000), Real::Missing);
         assert_eq!(real(0x7F80_0000), Real::Far, "infinite");
         assert_eq!(real(0x0000_0001), Real::Far, "1e-45");
+    }
+
+    #[test]
+    fn dates_follow_the_calendar() {
+        for (day, month, year) in [
+            (31, 1, 0),
+            (28, 2, 0),
+            (29, 2, 100),
+            (29, 2, 124),
+            (30, 4, 124),
+            (31, 12, 255),
+        ] {
+            assert!(is_date(day, month, year), "{day}.{month}.{year}");
+        }
+        // 1900 and 2100 are no leap years.
+        for (day, month, year) in [
+            (0, 1, 124),
+            (32, 1, 124),
+            (29, 2, 0),
+            (29, 2, 200),
+            (29, 2, 123),
+            (30, 2, 124),
+            (31, 2, 124),
+            (31, 4, 124),
+            (31, 6, 124),
+            (31, 9, 124),
+            (31, 11, 124),
+            (1, 0, 124),
+            (1, 13, 124),
+        ] {
+            assert!(!is_date(day, month, year), "{day}.{month}.{year}");
+        }
     }
 
     #[test]

@@ -26,6 +26,7 @@ mod master;
 mod medium;
 mod outside;
 mod own;
+mod prepared;
 mod respond;
 mod setup;
 mod signal;

@@ -1,5 +1,7 @@
 //! `valvescope simulate --hart`: a HART device, and who else is on its line.
 
+mod prepared;
+
 use super::super::serve::say;
 use super::super::{DeviceArg, asked_to_end, refuse};
 use crate::bus::hart::MODE;
@@ -18,6 +20,8 @@ use tokio_serial::{SerialPort, SerialStream};
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "With --hart")]
 pub(super) struct HartArgs {
+    #[command(flatten)]
+    prepared: prepared::PreparedArgs,
     /// Polling address.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=63))]
     poll: u8,
@@ -98,7 +102,10 @@ pub(super) async fn run(
         },
         ..HartSetup::of(family)
     };
-    let mut valve = HartDevice::new(tag, setup);
+    let mut valve = HartDevice::new(tag, args.prepared.setup(setup));
+    if let Err(text) = args.prepared.prepare(&mut valve) {
+        return refuse(text);
+    }
     for bit in &args.inject {
         if !valve.inject(bit, true) {
             return refuse(format_args!(

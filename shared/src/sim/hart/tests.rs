@@ -299,8 +299,22 @@ fn configuration_changes_are_told_to_each_master() {
     );
     bench.ask_as(secondary, 38, &[]);
     assert_eq!(bench.ask_as(secondary, 3, &[]).1 & 0x40, 0);
-    let bad = [&tag[..18], &[31, 13, 100]].concat();
-    assert_eq!(bench.code(18, &bad), 9, "month 13");
+    // Month 13, and days that are not in the calendar: 1900 and 2100 are no leap years.
+    for bad in [
+        [31, 13, 100],
+        [31, 4, 100],
+        [31, 2, 100],
+        [29, 2, 0],
+        [29, 2, 200],
+        [29, 2, 101],
+        [0, 1, 100],
+    ] {
+        let bad = [&tag[..18], &bad].concat();
+        assert_eq!(bench.code(18, &bad), 9, "{bad:?}");
+    }
+    let leap = [&tag[..18], &[29, 2, 100]].concat();
+    assert_eq!(bench.get(18, &leap), leap);
+    assert_eq!(bench.get(18, &tag), tag);
     // It is found by its tag, from a broadcast, with its own address.
     let find = [&[0x82, 0x80, 0, 0, 0, 0, 11, 6][..], &tag[..6]].concat();
     let check = find.iter().fold(0, |sum, b| sum ^ b);

@@ -128,7 +128,7 @@ impl HartDevice {
         let Some(date) = rest.first_chunk::<3>() else {
             return Answer::error(5);
         };
-        if !matches!(date, [1..=31, 1..=12, _]) {
+        if !exists(*date) {
             return Answer::error(9);
         }
         self.notes.tag = *tag;
@@ -282,4 +282,14 @@ impl HartDevice {
         bytes.truncate(len);
         bytes
     }
+}
+
+/// True for a day that exists, worked out apart from the decoder: day, month, year since 1900.
+fn exists([day, month, year]: [u8; 3]) -> bool {
+    let year = u16::from(year).saturating_add(1900);
+    let leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let february = if leap { 29 } else { 28 };
+    let lengths = [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+    let length = lengths.get(usize::from(month.wrapping_sub(1)));
+    length.is_some_and(|length| (1..=*length).contains(&day))
 }
