@@ -76,6 +76,9 @@ pub enum UnitTrouble {
     State(u8),
 }
 
+/// How a trouble with a number is made, the number that is left out, and the last one.
+type Numbered = (fn(u8) -> UnitTrouble, u8, u8);
+
 use UnitTrouble::{AnalogLost, Input, State, Timer, UserFault};
 
 impl UnitTrouble {
@@ -103,8 +106,8 @@ impl UnitTrouble {
         Self::ChannelB,
     ];
 
-    /// Those with a number: how they are made, the number that is left out, and the last one.
-    const NUMBERED: [(fn(u8) -> Self, u8, u8); 5] = [
+    /// Those with a number.
+    const NUMBERED: [Numbered; 5] = [
         (UserFault, 0, 9),
         (AnalogLost, 1, 4),
         (Timer, 13, 15),
