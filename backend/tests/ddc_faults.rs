@@ -20,6 +20,7 @@ use shared::encode::{Read, frame};
 use shared::frame::Framing;
 use shared::frame::check::crc_holds;
 use shared::proto::{DdcNews, DdcShape, Outcome};
+use std::collections::BTreeMap;
 use std::io;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -174,6 +175,8 @@ fn network(framing: Framing, retries: u8, mut ends: Vec<DuplexStream>) -> Networ
         shape: DdcShape::Loop,
         start: 7,
         count: 6,
+        retry_faulty: false,
+        scalings: BTreeMap::new(),
     };
     let bus = BusConfig {
         name: "Loop".into(),

@@ -18,6 +18,8 @@ pub struct Cell {
     pub at: Micros,
     /// When it last became another value; `None` if it never did since it was first seen.
     pub changed: Option<Micros>,
+    /// Bits that were 0 at some time.
+    pub cleared: u16,
 }
 
 /// The last words of a device, filled from its answers.
@@ -92,11 +94,13 @@ impl Image {
             word,
             at,
             changed: None,
+            cleared: 0,
         });
         if cell.word != word {
             cell.changed = Some(at);
         }
         cell.word = word;
+        cell.cleared |= !word;
         cell.at = at;
     }
 
@@ -187,6 +191,9 @@ mod tests {
         image.absorb(&request, &[3, 4, 0, 0xF1, 0xFF, 0xF4], Micros::new(9));
         assert_eq!(image.row(row(3004)).unwrap().changed, Some(Micros::new(9)));
         assert_eq!(image.row(row(3005)).unwrap().changed, None);
+        // 0x00F0 and 0x00F1: bit 0 was 0 once, bits 4 to 7 never were.
+        let cell = image.cell(Table::Holding, Address::new(3004)).unwrap();
+        assert_eq!(cell.cleared & 0x00FF, 0x000F);
     }
 
     #[test]

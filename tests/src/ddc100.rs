@@ -3,12 +3,12 @@
 
 use shared::address::{Address, Table};
 use shared::capture::Micros;
-use shared::ddc100::Poller;
 use shared::ddc100::poller::{Next, Pass};
 use shared::ddc100::setup::{Member, Setup};
+use shared::ddc100::{FaultTable, HostPort, Poller};
 use shared::device::Device;
 use shared::encode::Read;
-use shared::proto::Outcome;
+use shared::proto::{DdcNews, Outcome};
 use shared::sim::ddc100::Loop;
 
 /// Host and network, in simulated time.
@@ -106,6 +106,36 @@ impl Bench {
                 )
             })
             .collect()
+    }
+}
+
+/// What a host tells of a unit after a poll through a port.
+#[must_use]
+pub fn unit_news(faults: &FaultTable, unit: u8, port: u8) -> DdcNews {
+    DdcNews::Unit {
+        bus: String::new(),
+        unit,
+        port,
+        outcome: Outcome::Ok,
+        text: String::new(),
+        fault_a: faults.fault(unit, HostPort::One),
+        fault_b: faults.fault(unit, HostPort::Two),
+        request: String::new(),
+        response: String::new(),
+        at_us: None,
+        took_us: None,
+    }
+}
+
+/// What it tells of a pass.
+#[must_use]
+pub fn pass_news(pass: Pass) -> DdcNews {
+    DdcNews::Pass {
+        bus: String::new(),
+        port: pass.port.number(),
+        number: pass.number,
+        took_us: pass.took_us,
+        expected_us: pass.expected_us,
     }
 }
 

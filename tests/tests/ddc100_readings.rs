@@ -141,9 +141,10 @@ const HELD: [(&str, Held); 36] = [
         By(|| {
             rests(MX, Table::Holding, 9, "D9");
             // STOP: bit 6 is 0 before and 1 after the second quarter of 1999; register 12 decides.
-            assert_eq!(Mode::of(Some(false), Some(false)), Mode::Stop);
-            assert_eq!(Mode::of(Some(true), Some(false)), Mode::LocalOrStop);
-            assert_eq!(Mode::of(Some(false), None), Mode::NotLocal);
+            assert_eq!(Mode::of(MX, Some(false), Some(false)), Mode::Stop);
+            assert_eq!(Mode::of(UEC, Some(false), Some(false)), Mode::LocalOrStop);
+            assert_eq!(Mode::of(MX, Some(true), Some(false)), Mode::LocalOrStop);
+            assert_eq!(Mode::of(MX, Some(false), None), Mode::NotLocal);
         }),
     ),
     (
@@ -296,7 +297,7 @@ const HELD: [(&str, Held); 36] = [
     (
         "D29",
         Because(
-            "a demand on masters; ours sends reads only, and needs no more than functions 01 to 04",
+            "a demand on masters; ours sends reads (01 to 04) and the counters of function 08, and needs no more: backend test only_reads_come_out_of_the_ports",
         ),
     ),
     (

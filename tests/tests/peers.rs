@@ -479,12 +479,27 @@ fn pymodbus_and_we_read_the_same_objects_over_a_serial_line() {
 
 // ---- DDC-100
 
+/// What the simulated units report, so that there are bits to compare.
+const TROUBLES: [&str; 8] = [
+    "input-5-1",
+    "analog-lost-2-1",
+    "verify-close-2",
+    "analog-lost-3-2",
+    "input-9-2",
+    "rotation-3",
+    "input-8-4",
+    "input-17-4",
+];
+
 /// Our simulated network behind one serial line, and what pymodbus reads of it.
 fn pymodbus_reads_field_units(framing: &str) -> Vec<Value> {
     let (_cable, ours, theirs) = cable();
     let mut command = Command::new(binary());
     command.args(["simulate", "--ddc100", &ours, "--framing", framing]);
     command.args(["--units", "mx:1,uec:1,clamshell:1,io:1"]);
+    for fault in TROUBLES {
+        command.args(["--fault", fault]);
+    }
     let (_simulator, ()) = Process::start(&mut command, "build the backend first", |line| {
         line.contains("units 1 to 4").then_some(())
     });
@@ -527,6 +542,10 @@ fn check_field_units(answers: &[Value]) {
         let bits = list(unit, ask, "bits");
         bits.iter().filter_map(Value::as_bool).collect()
     };
+    let word = |bits: &[bool]| {
+        let bits = bits.iter().rev();
+        bits.fold(0, |sum, bit| sum * 2 + u64::from(*bit))
+    };
     for unit in 1..=4 {
         // Table 3.5: registers 1 to 56; the poll of section 3.2.3 is a part of them.
         let (mut all, poll) = (registers(unit, "all"), registers(unit, "poll"));
@@ -545,18 +564,33 @@ fn check_field_units(answers: &[Value]) {
         );
         // Function 04 reads the same registers (reading D6).
         assert_eq!(registers(unit, "input registers"), poll[..2], "unit {unit}");
-        assert_eq!(bits(unit, "coils").len(), 16, "nine coils in two bytes");
+        // Coil n is bit n - 1 of register 11 on every type (readings D2, D3, D33).
+        let coils = bits(unit, "coils");
+        assert_eq!(coils.len(), 16, "nine coils in two bytes");
+        assert_eq!(word(&coils) & 0x1FF, poll[3] & 0x1FF, "unit {unit}");
+        // The relay that was engaged: coil 3, 3, 4 and 8 (table 3.7).
+        let relay = [3, 3, 4, 8][usize::try_from(unit).expect("small") - 1];
+        let on: Vec<usize> = (1..=9).filter(|n| coils[n - 1]).collect();
+        assert_eq!(on, [relay], "unit {unit}");
         // Table 3.2: no function 02 in an MX/DDC, and no 17 in any.
         if unit == 1 {
             assert_eq!(of(unit, "inputs")["exception"], json!(1));
         } else {
-            // Table 3.4: inputs 129 to 144 are register 9.
-            let word = bits(unit, "inputs");
-            let word = word
-                .iter()
-                .rev()
-                .fold(0, |sum, bit| sum * 2 + u64::from(*bit));
-            assert_eq!(word, poll[1], "unit {unit}");
+            // Table 3.4: inputs 129 to 208 are the bits of registers 9 to 13.
+            let inputs = bits(unit, "inputs");
+            let words: Vec<u64> = inputs.chunks(16).map(word).collect();
+            assert_eq!(words, poll[1..], "unit {unit}");
+        }
+        // Tables 3.4 and 3.5: the bits of what was brought about, by register and bit.
+        let expected: &[(usize, u64)] = match unit {
+            1 => &[(12, 13), (13, 3)],
+            2 => &[(10, 1), (13, 2), (13, 15)],
+            3 => &[(10, 13)],
+            // Reading D17: input 17 is bit 15 of register 13.
+            _ => &[(12, 0), (13, 15)],
+        };
+        for (register, bit) in expected {
+            assert_eq!(poll[register - 8] >> bit & 1, 1, "unit {unit}, {register}");
         }
         assert_eq!(of(unit, "report")["exception"], json!(1), "unit {unit}");
         assert_eq!(of(unit, "beyond")["exception"], json!(2), "unit {unit}");
@@ -581,6 +615,19 @@ fn check_field_units(answers: &[Value]) {
     let opening = registers(2, "opening");
     assert_eq!(opening[1] >> 3 & 1, 1, "{opening:?}");
     assert!(bits(2, "opening coils")[1]);
+    // And 512 stops: neither opening nor closing, both contactors off.
+    assert_eq!(registers(2, "stopped")[1] >> 3 & 0b11, 0);
+    assert!(!bits(2, "stopped coils")[0] && !bits(2, "stopped coils")[1]);
+    // Table 3.8. Unit 2 saw three requests for it and one for unit 1, one was an exception, then
+    // those that asked.
+    for (ask, value) in [
+        ("bus messages", 4),
+        ("communication errors", 0),
+        ("exceptions", 1),
+        ("own messages", 6),
+    ] {
+        assert_eq!(of(2, ask)["message"], json!(value), "{ask}");
+    }
     let nobody = of(9, "nobody");
     assert!(nobody.get("error").is_some(), "{nobody}");
 }

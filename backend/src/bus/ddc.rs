@@ -81,6 +81,7 @@ pub fn setup(bus: &BusConfig, ddc: &DdcConfig, devices: &[DeviceConfig]) -> Opti
             bits: u8::try_from(ddc.mode.bits()).unwrap_or(10),
         },
         retries: bus.retries,
+        retry_faulty: ddc.retry_faulty,
         turn_us: micros(bus.turnaround),
         timeout_us: micros(bus.timeout),
         ..Setup::new(ddc.shape, ddc.paths().len() > 1, units.collect(), read)
@@ -153,7 +154,7 @@ pub fn start(
         .collect();
     let desk = Desk::new(units.len(), activity);
     let timeout_ms = u32::try_from(timeout.as_millis()).unwrap_or(u32::MAX);
-    desk.say(desk::network(bus, ddc, devices, timeout_ms), 0);
+    desk.say(desk::network(bus, ddc, devices, &setup, timeout_ms), 0);
     let news = desk.board();
     let actor = Actor {
         name: bus.name.clone(),

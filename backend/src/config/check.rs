@@ -68,8 +68,11 @@ pub(super) fn check(file: raw::File, beside: &Path) -> Result<Config, Wrong> {
     }
     for (at, bus) in file.bus.iter().enumerate() {
         if let Some(name) = &bus.get_ref().tags {
-            let units = tags::read(name, beside, at, &config)?;
-            config.devices.extend(units);
+            let list = tags::read(name, beside, at, &config)?;
+            config.devices.extend(list.units);
+            if let Some(LineConfig::Ddc(ddc)) = config.buses.get_mut(at).map(|b| &mut b.line) {
+                Arc::make_mut(ddc).scalings = list.scalings;
+            }
         }
     }
     for device in file.device {
@@ -173,7 +176,12 @@ fn strays(raw: &raw::Bus, kind: &str) -> Result<(), Wrong> {
         (raw.turnaround_ms.as_ref(), !ddc && !hart, "turnaround_ms"),
     ];
     let numbers = numbers.map(|(value, belongs, key)| (value.map(Spanned::span), belongs, key));
-    for (span, belongs, key) in strays.into_iter().chain(numbers) {
+    let flags = [(
+        raw.retry_faulty.as_ref().map(Spanned::span),
+        ddc,
+        "retry_faulty",
+    )];
+    for (span, belongs, key) in strays.into_iter().chain(numbers).chain(flags) {
         if let (Some(span), false) = (span, belongs) {
             let instead = if key == "turnaround_ms" && ddc {
                 "write `turn_ms`"

@@ -4,11 +4,15 @@ use super::check::{Wrong, number, wrong};
 use super::{BusConfig, Config, DeviceConfig, LineConfig, Mode, Parity, raw};
 use crate::clock::Clock;
 use crate::sim::ddc::{Fault, Network, Span};
-use shared::ddc100::setup::SetupProblem;
+use shared::ddc100::scaling::Scaling;
+use shared::ddc100::setup::{
+    Setup, USUAL_REGISTERS, USUAL_RETRIES, USUAL_TIMEOUT_US, USUAL_TURN_US,
+};
 use shared::device::Device;
 use shared::frame::Framing;
 use shared::proto::DdcShape;
 use shared::sim::ddc100::{Trouble, UnitTrouble};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
@@ -22,15 +26,6 @@ const MODES: [&str; 4] = ["8N1", "8E1", "8O1", "8N2"];
 const REGISTERS: u16 = 56;
 /// Registers that every poll reads: status and faults (LMAIM4019-00, section 3.2.3).
 const LEAST: (u16, u16) = (9, 10);
-/// What a poll reads if nothing else is said: position, status, faults, outputs and inputs.
-const USUAL: (u16, u16) = (8, 13);
-/// Answer to next request: more than 20 ms and less than 50 ms (LMAIM4019-00, section 4.3).
-const TURN_MS: u32 = 21;
-/// How long a unit may take, if nothing else is said: the guide wants more than 200 ms (section 4.3,
-/// point 4). The time of its answer on the wire is added (reading D24).
-const TIMEOUT_MS: u32 = 250;
-/// How often a poll is repeated on the same port. The guide allows three (section 6.1, item 2).
-const RETRIES: u8 = 1;
 
 /// What is special about a DDC-100 network.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +44,10 @@ pub struct DdcConfig {
     pub start: u16,
     /// Registers of each poll.
     pub count: u16,
+    /// Polls are repeated also where a fault is known already.
+    pub retry_faulty: bool,
+    /// How the analog values of units are scaled, where the tag list says it.
+    pub scalings: BTreeMap<u8, Scaling>,
 }
 
 /// The host ports of a network.
@@ -148,14 +147,16 @@ pub(super) fn bus(bus: &Spanned<raw::Bus>, simulated: bool) -> Result<BusConfig,
     };
     let (first, last) = registers(raw)?;
     let count = last - first + 1;
-    let turn = number(raw.turn_ms.as_ref(), "turn_ms", 21..=49)?.unwrap_or(TURN_MS);
+    let turn = number(raw.turn_ms.as_ref(), "turn_ms", 21..=49)?;
     let asked = number(raw.timeout_ms.as_ref(), "timeout_ms", 201..=60_000)?;
     let retries = number(raw.retries.as_ref(), "retries", 0..=3)?;
     Ok(BusConfig {
         name: raw.name.get_ref().clone(),
-        timeout: Duration::from_millis(asked.unwrap_or(TIMEOUT_MS).into()),
-        retries: retries.and_then(|n| n.try_into().ok()).unwrap_or(RETRIES),
-        turnaround: Duration::from_millis(turn.into()),
+        timeout: time(asked, USUAL_TIMEOUT_US),
+        retries: retries
+            .and_then(|n| n.try_into().ok())
+            .unwrap_or(USUAL_RETRIES),
+        turnaround: time(turn, USUAL_TURN_US),
         line: LineConfig::Ddc(Arc::new(DdcConfig {
             ports,
             framing,
@@ -164,7 +165,16 @@ pub(super) fn bus(bus: &Spanned<raw::Bus>, simulated: bool) -> Result<BusConfig,
             shape,
             start: first - 1,
             count,
+            retry_faulty: raw.retry_faulty.as_ref().is_some_and(|r| *r.get_ref()),
+            scalings: BTreeMap::new(),
         })),
+    })
+}
+
+/// Milliseconds that were asked for, or the usual microseconds.
+fn time(asked: Option<u32>, usual_us: u64) -> Duration {
+    asked.map_or(Duration::from_micros(usual_us), |ms| {
+        Duration::from_millis(ms.into())
     })
 }
 
@@ -244,14 +254,13 @@ pub(super) fn network(bus: &BusConfig, raw: &raw::Bus, config: &Config) -> Resul
         return wrong(&raw.name, text);
     }
     let setup = crate::bus::ddc::setup(bus, ddc, &units);
-    let problems = setup.map(|s| s.problems()).unwrap_or_default();
-    for problem in problems {
-        // There are repeaters, which nothing here knows of.
-        if let SetupProblem::MultiDrop(_) = problem {
-            tracing::warn!("{}: {problem}", bus.name);
-            continue;
-        }
+    let problems = setup.as_ref().map(Setup::problems).unwrap_or_default();
+    if let Some(problem) = problems.first() {
         return wrong(&raw.name, problem.to_string());
+    }
+    // There are repeaters, which nothing here knows of.
+    if let Some(hint) = setup.as_ref().and_then(Setup::hint) {
+        tracing::warn!("{}: {hint}", bus.name);
     }
     if let DdcPorts::Simulated(faults) = &ddc.ports
         && let Err(fault) = Network::new(ddc.shape, &units, faults, Clock::start())
@@ -261,8 +270,8 @@ pub(super) fn network(bus: &BusConfig, raw: &raw::Bus, config: &Config) -> Resul
         })
     {
         let why = format!(
-            "`faults`: \"{fault}\" can't be: the network has {} units, and no unit or place of \
-             that number",
+            "`faults`: \"{fault}\" can't be: the network has {} units, and no place or unit of \
+             that number, or the unit is of a type that has no such thing",
             units.len()
         );
         return wrong(text, why);
@@ -283,7 +292,7 @@ fn faults(raw: &raw::Bus) -> Result<Vec<Fault>, Wrong> {
 /// First and last register of a poll, as printed in the guide.
 fn registers(raw: &raw::Bus) -> Result<(u16, u16), Wrong> {
     let Some(text) = &raw.registers else {
-        return Ok(USUAL);
+        return Ok(USUAL_REGISTERS);
     };
     let range = text.get_ref().split_once('-').and_then(|(first, last)| {
         let first: u16 = first.trim().parse().ok()?;
@@ -293,7 +302,7 @@ fn registers(raw: &raw::Bus) -> Result<(u16, u16), Wrong> {
     let Some((first, last)) = range else {
         let text_ = format!(
             "`registers` is \"{}\"; write the first and the last register of a poll as the guide \
-             numbers them, 1 to {REGISTERS}, as \"8-13\"",
+             numbers them, 1 to {REGISTERS}, as \"8-16\"",
             text.get_ref()
         );
         return wrong(text, text_);
@@ -344,12 +353,12 @@ pub(super) fn simulated() -> BusConfig {
         fault(Trouble::Break(5), 60, 120),
         fault(Trouble::Unit(9, UnitTrouble::Off), 180, 210),
     ];
-    let (first, last) = USUAL;
+    let (first, last) = USUAL_REGISTERS;
     BusConfig {
         name: "Simulated DDC-100 loop".into(),
-        timeout: Duration::from_millis(TIMEOUT_MS.into()),
-        retries: RETRIES,
-        turnaround: Duration::from_millis(TURN_MS.into()),
+        timeout: time(None, USUAL_TIMEOUT_US),
+        retries: USUAL_RETRIES,
+        turnaround: time(None, USUAL_TURN_US),
         line: LineConfig::Ddc(Arc::new(DdcConfig {
             ports: DdcPorts::Simulated(faults),
             framing: Framing::Rtu,
@@ -362,6 +371,8 @@ pub(super) fn simulated() -> BusConfig {
             shape: DdcShape::Loop,
             start: first - 1,
             count: last - first + 1,
+            retry_faulty: false,
+            scalings: BTreeMap::new(),
         })),
     }
 }

@@ -36,6 +36,7 @@ pub(super) struct Bus {
     pub host: Option<Spanned<String>>,
     pub timeout_ms: Option<Spanned<i64>>,
     pub retries: Option<Spanned<i64>>,
+    pub retry_faulty: Option<Spanned<bool>>,
     pub turnaround_ms: Option<Spanned<i64>>,
     pub port2: Option<Spanned<String>>,
     pub shape: Option<Spanned<String>>,

@@ -2,7 +2,10 @@
 
 use super::check::{Wrong, wrong};
 use super::{Config, DeviceConfig};
+use shared::ddc100::scaling::Scaling;
 use shared::ddc100::tags::TagList;
+use shared::ddc100::words::POSITION;
+use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
 
@@ -11,13 +14,21 @@ const MAX_BYTES: u64 = 4 * 1024 * 1024;
 /// Mistakes that are named at once.
 const SHOWN: usize = 5;
 
-/// The units that the list of a bus names, in the order in which they come up.
+/// What a list says of a network.
+pub(super) struct Named {
+    /// The units, in the order in which they come up.
+    pub units: Vec<DeviceConfig>,
+    /// How their analog values are scaled, where it says so.
+    pub scalings: BTreeMap<u8, Scaling>,
+}
+
+/// What the list of a bus says.
 pub(super) fn read(
     name: &Spanned<String>,
     beside: &Path,
     bus: usize,
     config: &Config,
-) -> Result<Vec<DeviceConfig>, Wrong> {
+) -> Result<Named, Wrong> {
     let path = beside.join(name.get_ref());
     let shown = path.display();
     let refuse = |text: String| wrong(name, format!("`tags`: {text}"));
@@ -44,6 +55,7 @@ pub(super) fn read(
         return refuse(format!("{shown}, {}", lines.join("; ")));
     }
     let mut found: Vec<DeviceConfig> = Vec::new();
+    let mut scalings = BTreeMap::new();
     for tag in &list.tags {
         if found.iter().any(|d| d.unit == tag.unit) {
             continue;
@@ -65,6 +77,12 @@ pub(super) fn read(
                 named.tag, other.unit
             ));
         }
+        // A unit has one scaling for all (note 2 of table 3.5); the line of its position knows best.
+        let of_unit = || list.tags.iter().filter(|t| t.unit == unit);
+        let scaling = list.scaling(unit, POSITION);
+        if let Some(scaling) = scaling.or_else(|| of_unit().find_map(|t| t.scaling)) {
+            scalings.insert(unit, scaling);
+        }
         found.push(DeviceConfig {
             tag: named.tag.clone(),
             device,
@@ -78,5 +96,8 @@ pub(super) fn read(
     if found.is_empty() {
         return refuse(format!("{shown} names no unit"));
     }
-    Ok(found)
+    Ok(Named {
+        units: found,
+        scalings,
+    })
 }

@@ -1,4 +1,5 @@
 use super::*;
+use shared::ddc100::scaling::Scaling;
 
 fn parse(text: &str) -> Result<Config, String> {
     Config::parse(Path::new("plant.toml"), text).map_err(|e| e.to_string())
@@ -241,18 +242,19 @@ fn a_network_has_the_defaults_of_its_guide() {
     // LMAIM4019-00: table 3.1, section 4.3, section 3.2.3.
     assert_eq!(bus.line.to_string(), "/dev/ttyUSB0, /dev/ttyUSB1 9600 8N1");
     assert_eq!(ddc.framing, Framing::Rtu);
-    assert_eq!((ddc.start, ddc.count), (7, 6));
+    assert_eq!((ddc.start, ddc.count), (7, 9), "registers 8 to 16");
     assert_eq!(ddc.paths(), ["/dev/ttyUSB0", "/dev/ttyUSB1"]);
     assert!(bus.turnaround > Duration::from_millis(20));
     assert!(bus.timeout > Duration::from_millis(200) && bus.retries <= 3);
     let all = format!(
         "{LOOP}\nframing = \"ascii\"\nbaud = 1200\nmode = \"8E1\"\nregisters = \"1-56\"\nturn_ms = 49\n\
-         timeout_ms = 201\nretries = 0"
+         timeout_ms = 201\nretries = 0\nretry_faulty = true"
     );
     let config = with(&all, MX).unwrap();
     let ddc = config.buses[0].line.ddc().unwrap();
     assert_eq!((ddc.framing, ddc.baud), (Framing::Ascii, 1200));
     assert_eq!((ddc.start, ddc.count), (0, 56));
+    assert!(ddc.retry_faulty);
     let single = "kind = \"ddc100\"\nshape = \"single-ended\"\nport = \"p\"";
     let config = with(single, MX).unwrap();
     assert_eq!(config.buses[0].line.ddc().unwrap().paths(), ["p"]);
@@ -288,7 +290,7 @@ fn refusals_about_networks_name_the_line_and_what_to_do() {
     for registers in ["9", "0-13", "9-57", "13-8", "a-b", "9-"] {
         wrong(
             &format!("registers = \"{registers}\""),
-            &[registers, "8-13"],
+            &[registers, "8-16"],
         );
     }
     wrong("registers = \"10-13\"", &["at least 9", "10"]);
@@ -341,7 +343,7 @@ fn refusals_about_networks_name_the_line_and_what_to_do() {
         &simulated("\"break-1\",\n\"off-7\""),
         MX,
         7,
-        &["off-7", "no unit"],
+        &["off-7", "no place or unit"],
     );
     check(&simulated("\"break-2\""), MX, 6, &["break-2", "1 units"]);
 }
@@ -559,6 +561,20 @@ fn a_tag_list_names_the_units_of_a_network() {
             (3, Device::Ddc100Mx, "80-POS-4142", "Position"),
             (1, Device::Ddc100Io, "x", ""),
         ]
+    );
+    assert!(config.buses[0].line.ddc().unwrap().scalings.is_empty());
+    // The scaling of register 8 counts before another one of the unit, wherever it stands.
+    let list = "Tag name,Unit,Type,Register,Scaling\n\
+                a,7,ddc100-uec,40007,0-255\n\
+                b,7,,40008,0-4095\n\
+                c,3,ddc100-mx,,raw\n\
+                d,4,ddc100-mx,40008,\n";
+    let config = with_tags("scaling", list, "").unwrap();
+    let scalings = &config.buses[0].line.ddc().unwrap().scalings;
+    let want = [(3, Scaling::Raw), (7, Scaling::TwelveBits)];
+    assert_eq!(
+        scalings.iter().map(|(u, s)| (*u, *s)).collect::<Vec<_>>(),
+        want
     );
     let head = "Tag name,Unit,Type\n";
     let many: String = (1..=250)

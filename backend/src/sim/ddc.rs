@@ -30,6 +30,8 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::time::{Instant, sleep_until, timeout};
 
+/// Bytes of the shortest frame of RTU: address, function and check.
+const SHORTEST: usize = 4;
 /// More bytes than any request has.
 const MAX_HEARD: usize = 4096;
 
@@ -126,7 +128,8 @@ impl Network {
         })
     }
 
-    /// From now on its valves are opened and closed, so that there is something to see.
+    /// From now on its valves are opened and closed, and inputs of I/O modules change, so that there
+    /// is something to see.
     #[must_use]
     pub fn lively(self, devices: &[DeviceConfig]) -> Self {
         let valves = devices.iter().filter(|d| d.device != Device::Ddc100Io);
@@ -141,7 +144,10 @@ impl Network {
             }
         });
         let strokes = strokes.collect();
-        self.lock().strokes = strokes;
+        let mut state = self.lock();
+        state.strokes = strokes;
+        state.cable.set_lively();
+        drop(state);
         self
     }
 
@@ -168,6 +174,14 @@ impl Network {
         let mut state = self.lock();
         state.go_on(now);
         state.cable.request(port, unit, pdu, now)
+    }
+
+    /// A frame came to a port that no unit could make anything of.
+    fn damaged(&self, port: HostPort) {
+        let now = self.clock.now();
+        let mut state = self.lock();
+        state.go_on(now);
+        state.cable.damaged(port, now);
     }
 }
 
@@ -281,6 +295,9 @@ where
                 Ok(read) => read?,
                 Err(_) => {
                     // The frame is over, whatever it was.
+                    if heard.len() >= SHORTEST && !crc_holds(&heard) {
+                        network.damaged(port);
+                    }
                     heard.clear();
                     continue;
                 }
@@ -291,16 +308,21 @@ where
             return Ok(());
         }
         heard.extend_from_slice(bytes.get(..count).unwrap_or(&[]));
-        if let Some(request) = request(pace.framing, &mut heard) {
-            answer(&mut line, port, network, pace, &request, since).await?;
-        } else if heard.len() > MAX_HEARD {
-            heard.clear();
+        match request(pace.framing, &mut heard) {
+            Some(Ok(request)) => answer(&mut line, port, network, pace, &request, since).await?,
+            Some(Err(Damaged)) => network.damaged(port),
+            None if heard.len() > MAX_HEARD => heard.clear(),
+            None => {}
         }
     }
 }
 
-/// A request that is complete; what was heard is used up then.
-fn request(framing: Framing, heard: &mut Vec<u8>) -> Option<Heard> {
+/// A frame that is whole, but not sound.
+struct Damaged;
+
+/// A frame that is complete; what was heard is used up then. In RTU a damaged one has no end of its
+/// own: the silence after it is one.
+fn request(framing: Framing, heard: &mut Vec<u8>) -> Option<Result<Heard, Damaged>> {
     match framing {
         Framing::Ascii => {
             let end = heard.iter().position(|b| *b == b'\n')? + 1;
@@ -308,15 +330,18 @@ fn request(framing: Framing, heard: &mut Vec<u8>) -> Option<Heard> {
             // A colon begins a frame anew, whatever stood before it.
             let at = line.iter().rposition(|b| *b == b':')?;
             let line = line.get(at..)?;
-            Some(Heard {
-                unit: line.get(1..3).and_then(hex_pair)?,
-                pdu: pdu_of(line, framing).filter(|pdu| {
-                    // Only what is exactly the frame of this PDU.
-                    let unit = line.get(1..3).and_then(hex_pair).unwrap_or(0);
-                    frame(framing, 0, unit, pdu).eq_ignore_ascii_case(line)
-                })?,
-                characters: line.len(),
-            })
+            let unit = line.get(1..3).and_then(hex_pair);
+            let sound = unit.and_then(|unit| {
+                // Only what is exactly the frame of this PDU.
+                let pdu = pdu_of(line, framing)
+                    .filter(|pdu| frame(framing, 0, unit, pdu).eq_ignore_ascii_case(line))?;
+                Some(Heard {
+                    unit,
+                    pdu,
+                    characters: line.len(),
+                })
+            });
+            Some(sound.ok_or(Damaged))
         }
         _ => {
             let complete = length::request(heard.get(1..)?);
@@ -325,11 +350,11 @@ fn request(framing: Framing, heard: &mut Vec<u8>) -> Option<Heard> {
                 return None;
             }
             let frame = std::mem::take(heard);
-            Some(Heard {
+            Some(Ok(Heard {
                 unit: *frame.first()?,
                 pdu: pdu_of(&frame, framing)?,
                 characters: frame.len(),
-            })
+            }))
         }
     }
 }
@@ -358,4 +383,48 @@ where
         sleep_until(since + wait).await;
     }
     line.write_all(&bytes).await
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Function 08, sub-function 12: frames whose check does not hold, by RTU and ASCII.
+    #[tokio::test(start_paused = true)]
+    async fn damaged_frames_are_counted() {
+        for framing in [Framing::Rtu, Framing::Ascii] {
+            let device = DeviceConfig {
+                tag: "MOV-1".into(),
+                device: Device::Ddc100Mx,
+                bus: 0,
+                unit: 1,
+                description: String::new(),
+                profile: None,
+                target: None,
+            };
+            let shape = DdcShape::SingleEnded;
+            let network = Network::new(shape, &[device], &[], Clock::start()).unwrap();
+            let pace = Pace::new(framing, 9600, Duration::ZERO).at_once();
+            let (mut near, far) = tokio::io::duplex(MAX_HEARD);
+            tokio::spawn(async move { serve(far, HostPort::One, &network, pace).await });
+            let sound = frame(framing, 0, 1, &[8, 0, 12, 0, 0]);
+            let mut bad = sound.clone();
+            // A digit of the data of ASCII, or a byte of it in RTU.
+            bad[5] ^= 1;
+            for _ in 0..3 {
+                near.write_all(&bad).await.unwrap();
+                tokio::time::sleep(Duration::from_millis(100)).await;
+            }
+            // A sound frame for somebody else is not damaged.
+            near.write_all(&frame(framing, 0, 9, &[3, 0, 8, 0, 1]))
+                .await
+                .unwrap();
+            tokio::time::sleep(Duration::from_millis(100)).await;
+            near.write_all(&sound).await.unwrap();
+            let answer = frame(framing, 0, 1, &[8, 0, 12, 0, 3]);
+            let mut heard = vec![0; answer.len()];
+            near.read_exact(&mut heard).await.unwrap();
+            assert_eq!(heard, answer, "{framing:?}");
+        }
+    }
 }

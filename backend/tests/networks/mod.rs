@@ -142,6 +142,8 @@ impl Setting {
             shape: self.shape,
             start: self.registers.0 - 1,
             count: self.registers.1,
+            retry_faulty: false,
+            scalings: BTreeMap::new(),
         };
         let pace = Pace::of(&ddc);
         let pace = if self.thinks { pace } else { pace.at_once() };
@@ -297,6 +299,14 @@ impl Network {
         let (texts, _) = self.running.news.news(0);
         let pass = texts.iter().find(|t| t.starts_with("{\"ddc\":{\"pass\""));
         pass.and_then(|text| DdcNews::from_text(text))
+    }
+
+    /// What is to be looked at, as pages are told of the network.
+    pub fn hint(&self) -> Option<String> {
+        self.news().into_iter().find_map(|news| match news {
+            DdcNews::Network { hint, .. } => hint,
+            _ => None,
+        })
     }
 
     /// Number of the last pass.

@@ -5,7 +5,6 @@
 //! and [`FaultTable::overwritten`] shows the word as they would have it.
 
 use super::{HostPort, Pair};
-use crate::proto::{DdcNews, LineState};
 
 /// Bit 10 of register 9: channel A fault.
 pub const CHANNEL_A: u16 = 1 << 10;
@@ -118,34 +117,12 @@ impl FaultTable {
         }
     }
 
-    /// Takes in what the backend tells of a network: how a poll ended, and the state of a port. With
-    /// the table made of the same units, the page has the same table as the host.
-    pub fn apply(&mut self, news: &DdcNews) {
-        match news {
-            DdcNews::Unit {
-                unit,
-                port,
-                fault_a,
-                fault_b,
-                ..
-            } => {
-                for (of, fault) in HostPort::BOTH.into_iter().zip([fault_a, fault_b]) {
-                    // The port that was used was looked at; the other one counts if it is news.
-                    let looked = of.number() == *port && self.is_up(of);
-                    let news = *fault != self.fault(*unit, of) && self.is_up(of);
-                    if let Some(failed) = fault
-                        && (looked || news)
-                    {
-                        self.note(*unit, of, *failed);
-                    }
-                }
-            }
-            DdcNews::Port { port, state, .. } => {
-                if let Some(port) = HostPort::from_number(*port) {
-                    self.set_port(port, *state == LineState::Up);
-                }
-            }
-            _ => {}
+    /// Takes in that nothing is known of a unit on a port any more.
+    pub fn forget(&mut self, unit: u8, port: HostPort) {
+        self.seen = self.seen.saturating_add(1);
+        if let Some(line) = self.units.iter_mut().find(|l| l.unit == unit) {
+            line.cells.set(port, Cell::default());
+            line.changed = self.seen;
         }
     }
 

@@ -20,6 +20,7 @@ pub mod counters;
 pub mod diagnosis;
 pub mod estimate;
 pub mod faults;
+pub mod follow;
 pub mod poller;
 pub mod scaling;
 pub mod setup;

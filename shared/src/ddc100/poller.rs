@@ -8,7 +8,8 @@
 //! - **P4** If that fails too, the other fault is set, and polling goes on at the original port.
 //! - **P5** If it succeeds, the other fault is cleared and the answer is the unit's data.
 //! - **P6** Then too the next unit is polled at the original port (not stated; follows from P1).
-//! - **P7** Retries are spent on the same port before P3 (not stated), at most three.
+//! - **P7** Retries are spent on the same port before P3 (not stated), at most three. Where a fault is
+//!   known already there are none, unless [`Setup::retry_faulty`] wants them.
 //! - **P8** A unit that is off is tried on each pass, on both ports, until it answers.
 //!
 //! Between two exchanges there is room for something else ([`Poller::ask`]): at most one between
@@ -330,7 +331,12 @@ impl Poller {
             // Nothing was sent, so nothing is known.
             Outcome::Refused => {}
             Outcome::Silence | Outcome::Damaged => {
-                if self.repeat < self.setup.retries {
+                let known = self.faults.fault(unit, poll.port) == Some(true);
+                let retries = match known && !self.setup.retry_faulty {
+                    true => 0,
+                    false => self.setup.retries,
+                };
+                if self.repeat < retries {
                     self.repeat = self.repeat.saturating_add(1);
                     return false;
                 }

@@ -74,7 +74,9 @@ impl Scaling {
         }
     }
 
-    /// True for a row whose counts depend on the setting: those in percent.
+    /// True for a row whose counts depend on the setting: those in percent. Note 2 of table 3.5 lists
+    /// registers 3, 4, 6, 7 and 8; register 5 of the types that have an analog input there is
+    /// inferred, and its row says so.
     #[must_use]
     pub fn applies_to(row: &Row) -> bool {
         row.unit == "%" && matches!(row.table, Table::Holding | Table::Input)

@@ -18,6 +18,17 @@ pub const MOST_RETRIES: u8 = 3;
 pub const LEAST_TURN_US: u64 = 20_000;
 /// And not as long as this.
 pub const MOST_TURN_US: u64 = 50_000;
+/// Repeats if nothing else is said.
+pub const USUAL_RETRIES: u8 = 1;
+/// Turn time if nothing else is said, in microseconds: the shortest whole number of milliseconds that
+/// the guide allows.
+pub const USUAL_TURN_US: u64 = 21_000;
+/// How long a unit may take if nothing else is said, in microseconds: more than 200 ms (section 4.3,
+/// point 4). The time of its answer on the wire is added (reading D24).
+pub const USUAL_TIMEOUT_US: u64 = 250_000;
+/// First and last register of a poll if nothing else is said: position, status, faults, outputs,
+/// inputs, timers, user faults and current state.
+pub const USUAL_REGISTERS: (u16, u16) = (8, 16);
 /// Units of a multi-drop line without repeaters (section 4.2.3).
 pub const MOST_MULTI_DROP: usize = 28;
 
@@ -45,6 +56,9 @@ pub struct Setup {
     pub line: Line,
     /// How often a poll is repeated on the same port before it has failed, 0 to 3.
     pub retries: u8,
+    /// True if it is repeated also where a fault is known already; else it is tried once on each pass,
+    /// so that units that are off hold up the others less.
+    pub retry_faulty: bool,
     /// From an answer to the next request, in microseconds.
     pub turn_us: u64,
     /// How long an answer is waited for at least, in microseconds; see [`timeout`].
@@ -120,8 +134,8 @@ impl fmt::Display for SetupProblem {
 }
 
 impl Setup {
-    /// A network with the defaults: registers 8 to 16 of each unit, so that position, status and
-    /// faults come with every poll; 9600 baud, three retries, 30 ms turn time, 250 ms time-out.
+    /// A network that is polled with `read`, usually of [`USUAL_REGISTERS`]; the rest by default: RTU,
+    /// 9600 baud, one retry, 21 ms turn time, 250 ms time-out.
     #[must_use]
     pub fn new(shape: DdcShape, second: bool, units: Vec<Member>, read: Read) -> Self {
         Self {
@@ -130,9 +144,10 @@ impl Setup {
             units,
             read,
             line: Line::GUIDE,
-            retries: MOST_RETRIES,
-            turn_us: 30_000,
-            timeout_us: 250_000,
+            retries: USUAL_RETRIES,
+            retry_faulty: false,
+            turn_us: USUAL_TURN_US,
+            timeout_us: USUAL_TIMEOUT_US,
         }
     }
 

@@ -4,7 +4,7 @@
 use core::fmt;
 
 use super::scaling::{Scaled, Scaling};
-use super::words::{FAULTS, INPUTS_1, OUTPUTS, POSITION, STATUS, bit, register};
+use super::words::{FAULTS, INPUTS_1, OUTPUTS, POSITION, STATUS, bit, register, was_clear};
 use super::{HostPort, Pair, tables};
 use crate::address::{Address, Table};
 use crate::capture::Micros;
@@ -78,9 +78,10 @@ pub enum Mode {
     Unknown,
     /// The selector stands at REMOTE.
     Remote,
-    /// At LOCAL, or at STOP on a unit that reports both alike.
+    /// At LOCAL, or at STOP on a unit that reports both alike. So too if neither REMOTE nor LOCAL is
+    /// reported by a type for which the guide does not say what that means.
     LocalOrStop,
-    /// At STOP: neither REMOTE nor LOCAL, on a unit from before the second quarter of 1999.
+    /// At STOP: neither REMOTE nor LOCAL, on an MX from before the second quarter of 1999.
     Stop,
     /// Not at LOCAL; the register that tells REMOTE was not read.
     NotLocal,
@@ -89,15 +90,16 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// From bit 6 of register 9 (local) and bit 0 of register 12 (remote); readings D9 and section
-    /// 6.2, item 2.
+    /// From bit 6 of register 9 (local) and bit 0 of register 12 (remote); section 6.2, item 2. What
+    /// it means that neither is set is told for an MX only (reading D9).
     #[must_use]
-    pub const fn of(local: Option<bool>, remote: Option<bool>) -> Self {
+    pub const fn of(kind: Device, local: Option<bool>, remote: Option<bool>) -> Self {
         match (local, remote) {
             (Some(true), Some(true)) => Self::Contradictory,
             (_, Some(true)) => Self::Remote,
             (Some(true), _) => Self::LocalOrStop,
-            (Some(false), Some(false)) => Self::Stop,
+            (Some(false), Some(false)) if tables::is_fast(kind) => Self::Stop,
+            (Some(false), Some(false)) => Self::LocalOrStop,
             (Some(false), None) => Self::NotLocal,
             (None, Some(false)) => Self::LocalOrStop,
             (None, None) => Self::Unknown,
@@ -128,7 +130,8 @@ pub enum Own {
     Good,
     /// A fault.
     Fault,
-    /// A fault that is none: the optional channel B is not fitted (section 4.3.1).
+    /// The bit was never seen clear: the optional channel B is not fitted (section 4.3.1), or it has
+    /// a fault since before the first poll.
     NotFitted,
 }
 
@@ -140,18 +143,26 @@ impl Own {
             Self::Unknown => "not read yet",
             Self::Good => "no fault",
             Self::Fault => "fault",
-            Self::NotFitted => "not fitted: the bit is always set without the optional board",
+            Self::NotFitted => {
+                "not fitted, or a fault: the bit is always set without the optional board"
+            }
         }
     }
 }
 
-/// What the unit says about its channels.
+/// What the unit says about its channels. A channel B that was good once is there: later it has a
+/// fault.
 #[must_use]
 pub fn own(kind: Device, image: &Image) -> Pair<Own> {
     let of = |port: HostPort, at| match bit(image, STATUS, at) {
         None => Own::Unknown,
         Some(false) => Own::Good,
-        Some(true) if port == HostPort::Two && !tables::is_fast(kind) => Own::NotFitted,
+        Some(true) if port == HostPort::Two && !tables::is_fast(kind) => {
+            match was_clear(image, STATUS, at) {
+                true => Own::Fault,
+                false => Own::NotFitted,
+            }
+        }
         Some(true) => Own::Fault,
     };
     Pair {
@@ -281,7 +292,7 @@ impl View {
         let numbers = (3..=16).filter_map(|n| register(image, n));
         Self {
             state: state(kind, word),
-            mode: Mode::of(bit(image, STATUS, 6), bit(image, INPUTS_1, 0)),
+            mode: Mode::of(kind, bit(image, STATUS, 6), bit(image, INPUTS_1, 0)),
             position: analog(POSITION).filter(|_| kind != Device::Ddc100Io),
             combined_disputed: kind != Device::Ddc100Io
                 && word.is_some_and(|w| combined(w) != (w & 1 << 7 != 0)),

@@ -25,6 +25,18 @@ pub fn register(image: &Image, number: u16) -> Option<Cell> {
     cells.into_iter().flatten().max_by_key(|cell| cell.at)
 }
 
+/// True if a bit of a register was 0 at some time.
+#[must_use]
+pub fn was_clear(image: &Image, number: u16, bit: u32) -> bool {
+    let address = number.checked_sub(1).map(Address::new);
+    let cells = [Table::Holding, Table::Input].map(|table| image.cell(table, address?));
+    let zeros = cells
+        .into_iter()
+        .flatten()
+        .fold(0, |all, c| all | c.cleared);
+    zeros.wrapping_shr(bit) & 1 == 1
+}
+
 /// One bit of a register.
 #[must_use]
 pub fn bit(image: &Image, number: u16, bit: u32) -> Option<bool> {

@@ -222,10 +222,15 @@ pub fn text_function(function: &Function) -> String {
     let sub = function
         .sub
         .map_or_else(String::new, |sub| format!("/ {sub}"));
-    format!(
+    let mut text = format!(
         "FC {:02} {sub:<6}   {:<50} {}",
         function.code, function.label, function.source
-    )
+    );
+    if !function.note.is_empty() {
+        text.push_str("; ");
+        text.push_str(function.note);
+    }
+    text
 }
 
 #[cfg(test)]

@@ -72,6 +72,9 @@ pub struct DdcUnit {
     pub tag: String,
     /// What it does in the plant; may be empty.
     pub description: String,
+    /// Key of the scaling of its analog values, if the tag list says it: `0-4095`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scaling: Option<String>,
 }
 
 /// From the backend.
@@ -102,6 +105,9 @@ pub enum DdcNews {
         retries: u8,
         /// The units in the order of the cable, from host port 1.
         units: Vec<DdcUnit>,
+        /// What to look at although the network is polled: more units than the cable carries alone.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        hint: Option<String>,
     },
     /// What a poll of a unit brought, and what is known of its ports since.
     Unit {
@@ -270,9 +276,34 @@ mod tests {
                         kind: "ddc100-uec".into(),
                         tag: "MOV-1".into(),
                         description: String::new(),
+                        scaling: None,
                     }],
+                    hint: None,
                 },
                 r#"{"ddc":{"network":{"bus":"Loop","shape":"single_ended","framing":"modbus-rtu","baud":9600,"ports":["/dev/ttyS0"],"start":7,"count":9,"turn_ms":30,"timeout_ms":250,"retries":3,"units":[{"unit":1,"kind":"ddc100-uec","tag":"MOV-1","description":""}]}}}"#,
+            ),
+            (
+                DdcNews::Network {
+                    bus: "Line".into(),
+                    shape: DdcShape::MultiDrop,
+                    framing: "modbus-rtu".into(),
+                    baud: 9600,
+                    ports: vec![],
+                    start: 7,
+                    count: 9,
+                    turn_ms: 21,
+                    timeout_ms: 250,
+                    retries: 1,
+                    units: vec![DdcUnit {
+                        unit: 1,
+                        kind: "ddc100-io".into(),
+                        tag: "IO-1".into(),
+                        description: String::new(),
+                        scaling: Some("0-4095".into()),
+                    }],
+                    hint: Some("many".into()),
+                },
+                r#"{"ddc":{"network":{"bus":"Line","shape":"multi_drop","framing":"modbus-rtu","baud":9600,"ports":[],"start":7,"count":9,"turn_ms":21,"timeout_ms":250,"retries":1,"units":[{"unit":1,"kind":"ddc100-io","tag":"IO-1","description":"","scaling":"0-4095"}],"hint":"many"}}}"#,
             ),
             (
                 DdcNews::Unit {

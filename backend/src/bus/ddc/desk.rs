@@ -2,6 +2,7 @@
 
 use crate::bus::board::Board;
 use crate::config::{BusConfig, DdcConfig, DeviceConfig};
+use shared::ddc100::Setup;
 use shared::proto::{DdcNews, DdcUnit};
 use tokio::sync::watch;
 
@@ -61,6 +62,7 @@ pub(super) fn network(
     bus: &BusConfig,
     ddc: &DdcConfig,
     devices: &[DeviceConfig],
+    setup: &Setup,
     timeout_ms: u32,
 ) -> DdcNews {
     let ms = |time: std::time::Duration| u32::try_from(time.as_millis()).unwrap_or(u32::MAX);
@@ -69,6 +71,7 @@ pub(super) fn network(
         kind: device.device.key().into(),
         tag: device.tag.clone(),
         description: device.description.clone(),
+        scaling: ddc.scalings.get(&device.unit).map(|s| s.key().into()),
     };
     let port = |path: &str| ddc.serial(path).to_string();
     DdcNews::Network {
@@ -83,5 +86,6 @@ pub(super) fn network(
         timeout_ms,
         retries: bus.retries,
         units: devices.iter().map(unit).collect(),
+        hint: setup.hint().map(|hint| hint.to_string()),
     }
 }

@@ -11,6 +11,7 @@ use shared::ddc100::HostPort;
 use shared::device::Device;
 use shared::frame::Framing;
 use shared::proto::DdcShape;
+use shared::sim::ddc100::UnitTrouble;
 use std::io;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -41,9 +42,9 @@ pub(super) struct NetworkArgs {
     /// RTU or ASCII.
     #[arg(long, value_enum, default_value_t = FramingArg::Rtu, requires = "ddc100")]
     framing: FramingArg,
-    /// What is wrong: `break-3`, `short-3`, `port-2`, `off-7` and so on, or such with its time in
-    /// seconds, `break-3 from 60 to 120 every 240`. May be given several times.
-    #[arg(long, value_name = "FAULT", value_parser = str::parse::<Fault>, requires = "ddc100")]
+    /// What is wrong, or with its time in seconds: `break-3 from 60 to 120 every 240`. May be given
+    /// several times.
+    #[arg(long, long_help = fault_help(), value_name = "FAULT", value_parser = str::parse::<Fault>, requires = "ddc100")]
     fault: Vec<Fault>,
     /// Take the time of the characters too, as on a real cable; for pseudo terminals.
     #[arg(long, requires = "ddc100")]
@@ -51,9 +52,20 @@ pub(super) struct NetworkArgs {
     /// Answer at once instead of after the time of table 4.1.
     #[arg(long, requires = "ddc100", conflicts_with = "paced")]
     at_once: bool,
-    /// Open and close the valves now and then.
+    /// Open and close the valves now and then, and let the inputs of I/O modules change.
     #[arg(long, requires = "ddc100")]
     lively: bool,
+}
+
+/// Every name of a fault.
+fn fault_help() -> String {
+    format!(
+        "What is wrong: `break-3` or `short-3` (behind the third unit, 0 before the first), `port-2`, \
+         or one of these with the address of a unit, as `off-7`: {}. A number in brackets may be \
+         left out: `user-fault-3-7` is user fault 3 of unit 7, `user-fault-7` its first. With its \
+         time in seconds: `break-3 from 60 to 120 every 240`. May be given several times",
+        UnitTrouble::names()
+    )
 }
 
 /// Shapes of a cable.
@@ -135,8 +147,8 @@ pub(super) async fn run(args: &NetworkArgs, paths: &[String], baud: u32) -> Exit
         Err(fault) => {
             let count = devices.len();
             return refuse(format_args!(
-                "--fault {fault} can't be: there are {count} units, and no unit or place of that \
-                 number"
+                "--fault {fault} can't be: there are {count} units, and no place or unit of that \
+                 number, or the unit is of a type that has no such thing"
             ));
         }
     };
@@ -221,6 +233,24 @@ fn open(path: &str, baud: u32) -> Result<(SerialStream, Option<SerialStream>, St
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_help_names_every_fault() {
+        let help = fault_help();
+        for name in [
+            "off,",
+            "local-esd,",
+            "channel-b,",
+            "verify-close-stays,",
+            "user-fault[-0..9]",
+            "analog-lost[-1..4]",
+            "timer[-0..15]",
+            "input[-0..19]",
+            "state[-0..5]",
+        ] {
+            assert!(help.contains(name), "{name} is not in: {help}");
+        }
+    }
 
     #[test]
     fn units_are_counted_or_named() {

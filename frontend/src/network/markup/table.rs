@@ -277,7 +277,7 @@ mod tests {
         assert!(html.contains("<span class=\"quiet\" data-bit=\"own-b\" title=\"not fitted"));
         assert!(html.contains("<span class=\"quiet\" data-bit=\"host-a\">0</span>"));
         assert!(html.contains(">61 %<svg"));
-        assert!(html.contains(">Open · Stop</span>") && html.contains("3.0 s"));
+        assert!(html.contains(">Open · Local or stop</span>") && html.contains("3.0 s"));
         let html = drawn(&net, &Tags::default(), 1);
         assert!(html.contains("not tried yet") && html.contains("never"));
         assert!(html.contains("data-bit=\"host-a\">\u{2013}"));

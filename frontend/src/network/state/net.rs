@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 
 use shared::capture::Micros;
 use shared::ddc100::diagnosis::Diagnosis;
-use shared::ddc100::{FaultTable, HostPort, counters};
+use shared::ddc100::scaling::Scaling;
+use shared::ddc100::{counters, follow::Follower};
 use shared::device::Device;
 use shared::image::Image;
 use shared::proto::{DdcNews, DdcShape, DdcUnit, LineState, Outcome};
@@ -156,6 +157,14 @@ impl Unit {
         reach(self.fault, ports)
     }
 
+    /// How its analog values are scaled: as chosen here, else as the tag list of the bridge says,
+    /// else in percent.
+    #[must_use]
+    pub fn scaling(&self, chosen: Option<Scaling>) -> Scaling {
+        let listed = || Scaling::from_key(self.info.scaling.as_deref()?);
+        chosen.or_else(listed).unwrap_or_default()
+    }
+
     /// Its tag, or its address if it has none.
     #[must_use]
     pub fn name(&self) -> String {
@@ -201,10 +210,10 @@ pub struct Net {
     pub retries: u8,
     /// The units in the order of the cable, from host port 1.
     pub units: Vec<Unit>,
+    /// What to look at although the network is polled.
+    pub hint: Option<String>,
     /// The faults, as they came in, which tells whether they belong together.
-    pub table: Option<FaultTable>,
-    /// True if no fault changed since the last pass was over.
-    quiet: bool,
+    faults: Option<Follower>,
     /// Number of the last whole pass; 0 before the first.
     pub passes: u64,
     /// The read that was asked for last.
@@ -214,6 +223,9 @@ pub struct Net {
 impl Net {
     /// Takes news in. Those about a unit or a port that is not of this network are left out.
     pub fn hear(&mut self, news: DdcNews) {
+        if let Some(faults) = &mut self.faults {
+            faults.hear(&news);
+        }
         match news {
             DdcNews::Network {
                 shape,
@@ -226,6 +238,7 @@ impl Net {
                 timeout_ms,
                 retries,
                 units,
+                hint,
                 bus: _,
             } => {
                 let port = |line| Port {
@@ -234,9 +247,10 @@ impl Net {
                     text: String::new(),
                     pass: None,
                 };
-                let table = FaultTable::new(units.iter().map(|u| u.unit), ports.len() > 1);
+                let faults = Follower::new(units.iter().map(|u| u.unit), ports.len() > 1);
                 *self = Self {
-                    table: Some(table),
+                    hint,
+                    faults: Some(faults),
                     shape: Some(shape),
                     framing,
                     baud,
@@ -247,7 +261,6 @@ impl Net {
                     timeout_ms,
                     retries,
                     units: units.into_iter().map(Unit::new).collect(),
-                    quiet: false,
                     passes: 0,
                     asked: self.asked.take(),
                 };
@@ -265,7 +278,6 @@ impl Net {
                 took_us,
                 bus: _,
             } => {
-                self.note(unit, port, [fault_a, fault_b]);
                 let Some(unit) = self.unit_mut(unit) else {
                     return;
                 };
@@ -288,7 +300,6 @@ impl Net {
                 ..
             } => {
                 self.passes = number;
-                self.bear_out(port);
                 if let Some(port) = self.port_mut(port) {
                     port.pass = Some((took_us, expected_us));
                 }
@@ -296,10 +307,6 @@ impl Net {
             DdcNews::Port {
                 port, state, text, ..
             } => {
-                if let (Some(table), Some(of)) = (self.table.as_mut(), HostPort::from_number(port))
-                {
-                    table.set_port(of, state != LineState::Down);
-                }
                 if let Some(port) = self.port_mut(port) {
                     port.state = state;
                     port.text = text;
@@ -328,41 +335,10 @@ impl Net {
         }
     }
 
-    /// A whole pass on a port is over. If nothing changed in it, it bears out every fault there.
-    /// News of single units do not: of several polls only the newest may have come here.
-    fn bear_out(&mut self, port: u8) {
-        let quiet = core::mem::replace(&mut self.quiet, true);
-        let (Some(table), Some(of)) = (&mut self.table, HostPort::from_number(port)) else {
-            return;
-        };
-        for unit in self.units.iter().filter(|_| quiet) {
-            let at = usize::from(port).saturating_sub(1);
-            if let Some(Some(failed)) = unit.fault.get(at) {
-                table.note(unit.info.unit, of, *failed);
-            }
-        }
-    }
-
-    /// Takes faults into the table: that of the port that was polled, and the other one if it is
-    /// news.
-    fn note(&mut self, unit: u8, port: u8, faults: [Option<bool>; 2]) {
-        let Some(table) = &mut self.table else {
-            return;
-        };
-        for (of, fault) in HostPort::BOTH.into_iter().zip(faults) {
-            let Some(failed) = fault else { continue };
-            let news = table.fault(unit, of) != Some(failed);
-            if of.number() == port || news {
-                table.note(unit, of, failed);
-            }
-            self.quiet &= !news;
-        }
-    }
-
     /// What the pattern of faults means; `None` before the backend told of the network.
     #[must_use]
     pub fn diagnosis(&self) -> Option<Diagnosis> {
-        findings(self.shape?, self.table.as_ref()?)
+        findings(self.shape?, self.faults.as_ref()?.table())
     }
 
     /// A read of a unit was asked for.

@@ -221,15 +221,15 @@ pub(crate) mod tests {
         let picture = broken();
         assert_eq!(
             picture.name(1),
-            "Unit 2, MOV-002: answers on port 1 only, Stopped between the ends; Combined fault, Phase error; Stop"
+            "Unit 2, MOV-002: answers on port 1 only, Stopped between the ends; Combined fault, Phase error; Local or stop"
         );
         assert_eq!(
             picture.name(2),
-            "Unit 3, MOV-003: answers on port 1 only, Open; Stop, break after it"
+            "Unit 3, MOV-003: answers on port 1 only, Open; Local or stop, break after it"
         );
         assert_eq!(
             picture.name(3),
-            "Unit 4, MOV-004: answers on port 2 only, Open; Stop, break before it"
+            "Unit 4, MOV-004: answers on port 2 only, Open; Local or stop, break before it"
         );
         assert_eq!(picture.name(9), "");
     }

@@ -37,6 +37,7 @@ fn news(fields: Fields<'_>) -> Result<DdcNews, String> {
             timeout_ms: fields.small("timeout_ms")?,
             retries: fields.small("retries")?,
             units: fields.list("units", unit)?,
+            hint: said(fields, "hint")?,
         },
         "unit" => DdcNews::Unit {
             bus,
@@ -89,6 +90,7 @@ fn unit(fields: Fields<'_>) -> Result<DdcUnit, String> {
         kind: fields.text("kind")?,
         tag: fields.text("tag")?,
         description: fields.text("description")?,
+        scaling: said(fields, "scaling")?,
     })
 }
 
@@ -98,6 +100,14 @@ fn texts(fields: Fields<'_>) -> Result<Vec<String>, String> {
     let text = |json: &Json<'_>| json.text().map(str::to_owned);
     let all: Option<_> = list.iter().map(text).collect();
     all.ok_or_else(|| fields.wrong("ports"))
+}
+
+/// A text that may be `null` or missing.
+fn said(fields: Fields<'_>, name: &str) -> Result<Option<String>, String> {
+    match fields.body.get(name) {
+        None | Some(Json::Null) => Ok(None),
+        Some(_) => fields.text(name).map(Some),
+    }
 }
 
 /// A flag that may be `null` or missing.
@@ -191,7 +201,9 @@ mod tests {
                 kind: "ddc100-uec".into(),
                 tag: TEXT.into(),
                 description: String::new(),
+                scaling: (shape == DdcShape::Loop).then(|| "0-255".into()),
             }],
+            hint: (shape == DdcShape::MultiDrop).then(|| TEXT.into()),
         }));
         all.extend(STATES.map(|(_, state)| DdcNews::Port {
             bus: bus(),

@@ -105,14 +105,17 @@ impl Look<'_> {
     /// Item 2, second point; reading D9 on bit 6 and its change in 1999.
     pub(super) fn remote(&self) -> Item {
         let remote = bit(self.image, INPUTS_1, 0);
-        let mode = Mode::of(bit(self.image, STATUS, 6), remote);
+        let local = bit(self.image, STATUS, 6);
+        let mode = Mode::of(self.kind, local, remote);
         let (verdict, text) = match mode {
-            Mode::Remote if bit(self.image, STATUS, 6).is_some() => {
-                (Verdict::Pass, "The selector stands at REMOTE.")
-            }
+            Mode::Remote if local.is_some() => (Verdict::Pass, "The selector stands at REMOTE."),
             Mode::Remote => (
                 Verdict::Unknown,
                 "Register 12 says REMOTE; register 9 was not read.",
+            ),
+            Mode::LocalOrStop if local == Some(false) => (
+                Verdict::Fail,
+                "Register 12 does not say REMOTE, and register 9 not LOCAL; what that means is told for an MX only. Look at the selector.",
             ),
             Mode::LocalOrStop => (
                 Verdict::Fail,

@@ -137,6 +137,13 @@ fn d9_remote() {
         Fail,
         "before the second quarter of 1999",
     );
+    // The paragraphs on 1999 are about the MX.
+    for kind in [UEC, Device::Ddc100Clamshell] {
+        let list = list(kind, &old_stop, Wish::Open);
+        says(&list, "remote", Fail, "Look at the selector");
+        let text = &list.items.iter().find(|i| i.key == "remote").unwrap().text;
+        assert!(!text.contains("1999"), "{text}");
+    }
     says(
         &open(&but(9, 0x0044)),
         "remote",

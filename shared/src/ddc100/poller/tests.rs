@@ -88,8 +88,8 @@ fn p7_retries_stay_on_the_port() {
     assert_eq!(log[..4], [(1, 1, 0), (1, 1, 1), (1, 2, 0), (1, 2, 1)]);
     assert_eq!(
         log[4..],
-        [(1, 2, 0), (1, 2, 1)],
-        "the second pass begins at port 2"
+        [(1, 2, 0), (1, 1, 0)],
+        "the second pass begins at port 2, and knows of both faults"
     );
 }
 
@@ -132,7 +132,7 @@ fn the_turn_time_is_kept() {
     let end = start.plus(70_000);
     let done = poller.done(Good, end);
     assert_eq!((done.took_us, done.decided), (70_000, true));
-    let free = end.plus(30_000);
+    let free = end.plus(21_000);
     assert_eq!(poller.next(end), Next::Wait(free));
     assert_eq!(
         poller.next(free.plus(0)),
@@ -360,5 +360,41 @@ proptest! {
         for unit in 1..=units {
             prop_assert_eq!(poller.faults().fault(unit, HostPort::One), Some(true));
         }
+    }
+}
+
+/// A unit that is known to be off is tried once on each port of each pass, and as often as a new fault
+/// only if that is wanted; what answers is repeated as before.
+#[test]
+fn known_faults_are_tried_once() {
+    for (retry_faulty, expected) in [(false, 2), (true, 6)] {
+        let mut made = setup(2, true, 2);
+        made.retry_faulty = retry_faulty;
+        let mut poller = Poller::new(made);
+        let mut now = Micros::new(0);
+        let mut pass = || {
+            let mut polls = 0;
+            loop {
+                match poller.next(now) {
+                    Next::Wait(until) => now = until,
+                    Next::Poll(poll) => {
+                        let off = poll.member.unit == 2;
+                        polls += u32::from(off);
+                        now = now.plus(50_000);
+                        if poller
+                            .done(if off { Silence } else { Good }, now)
+                            .pass
+                            .is_some()
+                        {
+                            return polls;
+                        }
+                    }
+                    other => panic!("{other:?}"),
+                }
+            }
+        };
+        assert_eq!(pass(), 6, "three times on each port");
+        assert_eq!(pass(), expected);
+        assert_eq!(pass(), expected);
     }
 }

@@ -39,6 +39,37 @@ fn a_unit_in_words() {
     assert_eq!(mx.mode, Mode::NotLocal);
 }
 
+/// Reading D9: neither remote nor local is STOP on an MX; of the others the guide does not say it.
+#[test]
+fn d9_neither_remote_nor_local() {
+    let words = [(9, 0x0004), (12, 0x0800)];
+    assert_eq!(view(MX, &words).mode, Mode::Stop);
+    assert_eq!(view(Device::Ddc100MxB, &words).mode, Mode::Stop);
+    assert_eq!(view(UEC, &words).mode, Mode::LocalOrStop);
+    assert_eq!(
+        view(Device::Ddc100Clamshell, &words).mode,
+        Mode::LocalOrStop
+    );
+}
+
+/// Section 4.3.1: bit 11 is set without the granddaughter board. Once it was clear, the board is
+/// there, and the bit is a fault.
+#[test]
+fn a_channel_b_that_was_good_can_fail() {
+    let mut image = image(&[(9, 0x0802)]);
+    assert_eq!(own(UEC, &image).two, Own::NotFitted);
+    let mut set = |word, at| {
+        let address = Address::new(STATUS - 1);
+        image.set(Table::Holding, address, word, Micros::new(at));
+        own(UEC, &image).two
+    };
+    assert_eq!(set(0x0002, 50), Own::Good);
+    assert_eq!(set(0x0802, 60), Own::Fault);
+    assert_eq!(set(0x0802, 70), Own::Fault);
+    assert_eq!(set(0x0002, 80), Own::Good);
+    assert!(Own::NotFitted.label().contains("or a fault"));
+}
+
 #[test]
 fn states() {
     for (word, text) in [

@@ -41,10 +41,15 @@ impl Unit {
     pub(super) fn request(&mut self, port: HostPort, pdu: &[u8], now: Micros) -> Option<Answer> {
         let (function, data) = pdu.split_first()?;
         self.polled(port, now);
-        self.counters.messages = self.counters.messages.wrapping_add(1);
+        let listened_only = self.listens_only;
+        // It takes in what comes then, but does nothing of it, except to restart.
+        if listened_only && !matches!(pdu, [8, 0, 1, ..]) {
+            return None;
+        }
+        self.counters.own = self.counters.own.wrapping_add(1);
         let outcome = self.function(*function, data);
-        if self.listens_only {
-            self.counters.unanswered = self.counters.unanswered.wrapping_add(1);
+        // Neither what begins nor what ends that is answered.
+        if listened_only || self.listens_only {
             return None;
         }
         let pdu = match outcome {
@@ -212,12 +217,7 @@ impl Unit {
     /// Goes somewhere, if it may: commands of the network count in REMOTE only, and no emergency
     /// shutdown is active.
     fn travel(&mut self, target: u64) {
-        let wrong = self.wrong;
-        let may = self.is_remote()
-            && !wrong.thermal
-            && !wrong.phase
-            && !wrong.local_esd
-            && !self.network_esd;
+        let may = self.is_remote() && !self.is_stuck() && !self.local_esd() && !self.network_esd;
         if may {
             self.drive.go(target);
         }
@@ -315,6 +315,8 @@ impl Unit {
         Ok(())
     }
 
+    /// Table 3.8 has names only; what they count, and the listen-only mode, is as in the Modbus
+    /// application protocol 1.1b3, section 6.8.
     fn diagnostics(&mut self, data: &[u8]) -> Outcome {
         let Some((sub, _, _)) = two_words(data) else {
             return Err(ILLEGAL_VALUE);
@@ -326,7 +328,8 @@ impl Unit {
                 self.counters = super::unit::Counters::default();
                 return Ok(data.to_vec());
             }
-            2 | 12 => 0,
+            // The diagnostic register is for engineering use only.
+            2 => 0,
             3 => return Ok(data.to_vec()),
             4 => {
                 self.listens_only = true;
@@ -336,9 +339,10 @@ impl Unit {
                 self.counters = super::unit::Counters::default();
                 return Ok(data.to_vec());
             }
-            11 => self.counters.messages,
+            11 => self.counters.bus,
+            12 => self.counters.damaged,
             13 => self.counters.exceptions,
-            14 => self.counters.messages,
+            14 => self.counters.own,
             _ => return Err(ILLEGAL_FUNCTION),
         };
         let [s0, s1] = sub.to_be_bytes();

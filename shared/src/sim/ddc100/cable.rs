@@ -40,24 +40,25 @@ impl Cable {
         }
     }
 
-    /// True if a signal goes from the port to the unit at this place in the order of the cable,
-    /// counted from 0, and back. Units repeat the signal or, without power, pass it on, so only the
-    /// cable counts. On a multi-drop line a short anywhere silences everybody (section 4.2.3).
-    pub(super) fn reaches(&self, port: HostPort, place: usize) -> bool {
+    /// The places of the units, counted from 0 in the order of the cable, to which a signal goes from
+    /// the port and back. Units repeat the signal or, without power, pass it on, so only the cable
+    /// counts. On a multi-drop line a short anywhere silences everybody (section 4.2.3).
+    pub(super) fn reached(&self, port: HostPort) -> core::ops::Range<usize> {
         let [one, two] = self.dead;
-        let cut = |places: &[bool]| places.iter().any(|p| *p);
-        let way = |all: &[bool]| match port {
-            HostPort::One => all.get(..=place).is_none_or(cut),
-            HostPort::Two => all.get(place.saturating_add(1)..).is_none_or(cut),
-        };
-        let shorted = match self.shape {
-            DdcShape::MultiDrop => cut(&self.shorts),
-            _ => way(&self.shorts),
-        };
         let dead = match port {
             HostPort::One => one,
             HostPort::Two => two || self.shape != DdcShape::Loop,
         };
-        !dead && !shorted && !way(&self.breaks)
+        let shorted = self.shape == DdcShape::MultiDrop && self.shorts.contains(&true);
+        if dead || shorted {
+            return 0..0;
+        }
+        let units = self.breaks.len().saturating_sub(1);
+        let mut cuts = self.breaks.iter().zip(&self.shorts).map(|(b, s)| *b || *s);
+        match port {
+            // A cut at a place is before the unit of that number.
+            HostPort::One => 0..cuts.position(|cut| cut).unwrap_or(units).min(units),
+            HostPort::Two => cuts.rposition(|cut| cut).unwrap_or(0)..units,
+        }
     }
 }

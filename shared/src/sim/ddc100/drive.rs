@@ -75,6 +75,12 @@ impl Drive {
         self.jammed_us = None;
     }
 
+    /// Is moved by hand to a position in thousandths of a percent.
+    pub(super) const fn put(&mut self, position: u64) {
+        self.stop();
+        self.position = position;
+    }
+
     /// Goes to a position in thousandths of a percent.
     pub(super) fn go(&mut self, target: u64) {
         self.target = target.min(OPEN);

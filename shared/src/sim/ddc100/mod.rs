@@ -13,6 +13,7 @@
 mod answer;
 mod cable;
 mod drive;
+mod senses;
 #[cfg(test)]
 mod tests;
 mod trouble;
@@ -80,13 +81,10 @@ impl Loop {
     pub fn request(&mut self, port: HostPort, unit: u8, pdu: &[u8], now: Micros) -> Option<Answer> {
         self.now = self.now.max(now);
         let mut answer = None;
-        for (place, it) in self.units.iter_mut().enumerate() {
+        for it in self.hearing(port) {
+            it.noticed();
             let meant = unit == 0 || unit == it.address();
             if !meant {
-                continue;
-            }
-            it.advance(self.now);
-            if !self.cable.reaches(port, place) || !it.hears() {
                 continue;
             }
             let said = it.request(port, pdu, now);
@@ -97,8 +95,30 @@ impl Loop {
         answer
     }
 
+    /// A frame at a host port whose check does not hold; every unit that it reaches counts it, and
+    /// none answers.
+    pub fn damaged(&mut self, port: HostPort, now: Micros) {
+        self.now = self.now.max(now);
+        self.hearing(port).for_each(Unit::damaged);
+    }
+
+    /// Those that take in what comes from a port now.
+    fn hearing(&mut self, port: HostPort) -> impl Iterator<Item = &mut Unit> {
+        let reached = self.units.get_mut(self.cable.reached(port));
+        let now = self.now;
+        reached.into_iter().flatten().filter_map(move |it| {
+            it.advance(now);
+            it.hears().then_some(it)
+        })
+    }
+
+    /// From now on the inputs of I/O modules change with time, so that there is something to see.
+    pub fn set_lively(&mut self) {
+        self.units.iter_mut().for_each(Unit::set_lively);
+    }
+
     /// Brings a trouble about. False if it is there already or the network has no such unit or
-    /// place.
+    /// place, or the unit is of a type that knows no such trouble.
     pub fn inject(&mut self, trouble: Trouble) -> bool {
         if self.troubles.contains(&trouble) || !self.set(trouble, true) {
             return false;
@@ -131,11 +151,13 @@ impl Loop {
             Trouble::Unit(unit, what) => {
                 let now = self.now;
                 let it = self.units.iter_mut().find(|u| u.address() == unit);
-                it.map(|it| {
+                it.is_some_and(|it| {
                     it.advance(now);
-                    it.set(what, on);
+                    it.knows(what) && {
+                        it.set(what, on);
+                        true
+                    }
                 })
-                .is_some()
             }
         }
     }

@@ -353,18 +353,252 @@ fn functions() {
     assert_eq!(line.register(1, 9) & OPENING, OPENING);
 }
 
+/// Modbus application protocol 1.1b3, section 6.8; the guide has the names of table 3.8 only.
 #[test]
 fn diagnostics() {
-    let mut line = Line::new(DdcShape::Loop, &[MX]);
-    line.ask(1, &[8, 0, 10, 0, 0]);
+    let mut line = Line::new(DdcShape::Loop, &[MX, UEC]);
+    let counters = |line: &mut Line, unit| {
+        [11, 12, 13, 14].map(|sub| {
+            let answer = line.ask(unit, &[8, 0, sub, 0, 0]);
+            assert_eq!(answer[..3], [8, 0, sub]);
+            u16::from_be_bytes([answer[3], answer[4]])
+        })
+    };
+    for unit in [1, 2] {
+        line.ask(unit, &[8, 0, 10, 0, 0]);
+    }
+    // Unit 1 counts the request that cleared unit 2, and each of its own, this one too.
+    assert_eq!(counters(&mut line, 1), [2, 0, 0, 4]);
     line.ask(1, &[17]);
-    assert_eq!(line.ask(1, &[8, 0, 13, 0, 0]), [8, 0, 13, 0, 1]);
-    assert_eq!(line.ask(1, &[8, 0, 14, 0, 0]), [8, 0, 14, 0, 3]);
-    // Listen only: silence until the restart.
-    assert_eq!(line.through(HostPort::One, 1, &[8, 0, 4, 0, 0]), None);
-    assert_eq!(line.through(HostPort::One, 1, &[3, 0, 8, 0, 1]), None);
+    line.register(2, 9);
+    // 5 before, 17, the other one's, and this one.
+    assert_eq!(counters(&mut line, 1), [8, 0, 1, 9]);
+    // A damaged frame reaches unit 1 only, if the cable is broken behind it.
+    line.trouble("break-1");
+    line.network.damaged(HostPort::One, line.now);
+    line.network.damaged(HostPort::Two, line.now);
+    line.heal("break-1");
+    line.network.damaged(HostPort::One, line.now);
+    assert_eq!(counters(&mut line, 1)[1], 2);
+    assert_eq!(counters(&mut line, 2)[1], 2);
+    assert_eq!(line.ask(1, &[8, 0, 2, 0, 0]), [8, 0, 2, 0, 0]);
+    // What does not get through is not counted either.
+    line.trouble("off-2");
+    line.network.damaged(HostPort::One, line.now);
+    line.heal("off-2");
+    assert_eq!(counters(&mut line, 2), [1, 0, 0, 4], "since power-up");
+}
+
+/// Listen only: what comes is neither carried out nor answered until the restart, which is not
+/// answered either; a restart at another time is.
+#[test]
+fn listen_only() {
+    let mut line = Line::new(DdcShape::Loop, &[MX]);
     assert_eq!(line.ask(1, &[8, 0, 1, 0, 0]), [8, 0, 1, 0, 0]);
+    let silent = |line: &mut Line, pdu: &[u8]| {
+        assert_eq!(line.through(HostPort::One, 1, pdu), None, "{pdu:?}");
+    };
+    silent(&mut line, &[8, 0, 4, 0, 0]);
+    for pdu in [
+        &[3, 0, 8, 0, 1][..],
+        &[6, 0, 0, 1, 0],
+        &[8, 0, 0, 1, 2],
+        &[8, 0, 10, 0, 0],
+        &[8, 0, 1, 0, 0],
+    ] {
+        silent(&mut line, pdu);
+    }
+    assert_eq!(line.register(1, 9) & OPENING, 0, "256 did nothing");
+    silent(&mut line, &[8, 0, 4, 0, 0]);
+    line.trouble("off-1");
+    line.heal("off-1");
     line.register(1, 9);
+}
+
+/// Every trouble sets the bit that table 3.5 has for it in the column of the type, and no other of
+/// registers 9 (5, 8, 9, 12 to 15), 10 and 12 to 16 than those named.
+#[test]
+fn troubles_are_the_bits_of_the_table() {
+    type Bits = &'static [(u16, u16)];
+    let check = |kind, trouble: &str, expected: Bits| {
+        let mut line = Line::new(DdcShape::Loop, &[kind]);
+        let words = |line: &mut Line| {
+            [9, 10, 12, 13, 14, 15, 16].map(|number| (number, line.register(1, number)))
+        };
+        line.register(1, 10);
+        let before = words(&mut line);
+        line.trouble(&format!("{trouble}-1"));
+        let after = words(&mut line);
+        for ((number, before), (_, after)) in before.into_iter().zip(after) {
+            let bits = expected.iter().filter(|(n, _)| *n == number);
+            let expected = bits.fold(0, |word, (_, bit)| word | 1 << bit);
+            // Opened, closed, stopped and combined fault follow from others.
+            let follows = if number == 9 { 0b1001_1111 } else { 0 };
+            let follows = if number == 12 { 0b10_1000 } else { follows };
+            assert_eq!(
+                (before ^ after) & !follows,
+                expected,
+                "{kind:?} {trouble}: register {number}"
+            );
+        }
+        line.heal(&format!("{trouble}-1"));
+        let healed = words(&mut line);
+        for ((number, before), (_, healed)) in before.into_iter().zip(healed).skip(1) {
+            // A valve that was moved stays there, off its limit switch.
+            let moved = if number == 12 { 0b10_1000 } else { 0 };
+            assert_eq!(
+                before & !moved,
+                healed & !moved,
+                "{kind:?} {trouble} healed"
+            );
+        }
+    };
+    for kind in [UEC, CLAMSHELL] {
+        for (trouble, bits) in [
+            ("verify-open", &[(10, 0)][..]),
+            ("verify-close", &[(10, 1)]),
+            ("verify-open-stays", &[(10, 2)]),
+            ("verify-close-stays", &[(10, 3)]),
+            ("phase", &[(9, 15), (10, 4), (13, 12)]),
+            ("sequence", &[(9, 15), (10, 5), (13, 13)]),
+            ("rotation", &[(10, 13)]),
+            ("energized", &[(9, 9)]),
+            ("analog-lost", &[(13, 0)]),
+            ("analog-lost-4", &[(13, 3)]),
+            ("local", &[(9, 6), (12, 0)]),
+            ("local-open", &[(9, 6), (10, 14), (12, 0)]),
+            ("input", &[(12, 9)]),
+            ("input-0", &[(10, 11), (12, 8)]),
+            ("local-esd", &[(10, 11), (12, 8)]),
+            ("input-3", &[(12, 11)]),
+            ("input-7", &[(12, 15)]),
+            ("input-8", &[(13, 14)]),
+            ("input-9", &[(13, 15)]),
+        ] {
+            check(kind, trouble, bits);
+        }
+    }
+    for (trouble, bits) in [
+        ("phase", &[(9, 15), (10, 4), (13, 12)][..]),
+        ("sequence", &[(9, 15), (10, 5), (13, 13)]),
+        ("manual", &[(9, 14)]),
+        ("stop", &[(9, 6), (10, 13), (12, 0)]),
+        ("local-open", &[(9, 6), (10, 14), (12, 0)]),
+        ("analog-lost", &[(13, 2)]),
+        ("analog-lost-2", &[(13, 3)]),
+        ("input-3", &[(12, 11)]),
+        // The option board is there then.
+        ("input-6", &[(12, 14), (13, 7)]),
+        ("input-8", &[(13, 7), (13, 14)]),
+    ] {
+        check(MX, trouble, bits);
+    }
+    // Reading D17: inputs 18, 19, 16, 17 are bits 12 to 15 of register 13.
+    for (trouble, bits) in [
+        ("input-0", &[(12, 8)][..]),
+        ("input-3", &[(12, 11)]),
+        ("input-7", &[(12, 15)]),
+        ("input-8", &[(12, 0)]),
+        ("input-15", &[(12, 7)]),
+        ("input-16", &[(13, 14)]),
+        ("input-17", &[(13, 15)]),
+        ("input-18", &[(13, 12)]),
+        ("input-19", &[(13, 13)]),
+        ("analog-lost-2", &[(13, 1)]),
+    ] {
+        check(IO, trouble, bits);
+    }
+    for kind in [UEC, CLAMSHELL, IO] {
+        for (trouble, bits) in [
+            ("user-fault", &[(15, 0)][..]),
+            ("user-fault-9", &[(15, 9)]),
+            ("timer", &[(14, 13)]),
+            ("timer-0", &[(14, 0)]),
+            ("timer-10", &[(14, 10)]),
+            ("timer-15", &[(14, 15)]),
+            ("state", &[(16, 5)]),
+            ("state-0", &[(16, 0)]),
+            // With the board neither bit is set; without it both are (section 4.3.1).
+            ("channel-b", &[(9, 11), (14, 12)]),
+        ] {
+            check(kind, trouble, bits);
+        }
+    }
+}
+
+/// Registers 10 of a UEC-3-DDC, bits 6 to 9: from where to where the valve was moved by hand.
+#[test]
+fn moved_by_hand() {
+    let mut line = Line::new(DdcShape::Loop, &[UEC]);
+    let mut turn = |from: u16, bit: u16, to: u16| {
+        line.command(1, 19_200 + from);
+        line.wait(100);
+        line.trouble("manual-1");
+        assert_eq!(line.register(1, 10) & 0x03C0, 1 << bit, "from {from}");
+        assert_eq!(line.register(1, 9) & 1 << 14, 1 << 14);
+        assert_eq!(line.register(1, 8), to);
+        line.heal("manual-1");
+        assert_eq!(line.register(1, 10) & 0x03C0, 0);
+        assert_eq!(line.register(1, 8), to, "it stays where it is");
+    };
+    turn(70, 6, 100);
+    turn(100, 7, 50);
+    turn(30, 8, 0);
+    turn(0, 9, 50);
+}
+
+/// An I/O module has two analog inputs: at rest, or, if lively, between 0 and 100 % all the time.
+#[test]
+fn analog_inputs_of_a_module() {
+    let mut line = Line::new(DdcShape::Loop, &[IO]);
+    assert_eq!((line.register(1, 8), line.register(1, 7)), (40, 60));
+    assert_eq!((line.register(1, 6), line.register(1, 5)), (0xFFFF, 0xFFFF));
+    line.wait(30);
+    assert_eq!(line.register(1, 8), 40);
+    line.network.set_lively();
+    let seen: Vec<u16> = (0..240)
+        .map(|_| {
+            line.wait(1);
+            line.register(1, 8)
+        })
+        .collect();
+    assert_eq!(
+        (seen.iter().min(), seen.iter().max()),
+        (Some(&0), Some(&100))
+    );
+    assert!(seen.windows(2).all(|w| w[0].abs_diff(w[1]) <= 2));
+    line.trouble("analog-lost-1");
+    assert_eq!(line.register(1, 8), 0);
+    assert_ne!(line.register(1, 7), 0);
+}
+
+/// What a type does not have can't happen to it.
+#[test]
+fn troubles_of_other_types() {
+    let mut line = Line::new(DdcShape::Loop, &[MX, UEC, CLAMSHELL, IO]);
+    for name in [
+        "user-fault-1",
+        "timer-1",
+        "state-1",
+        "rotation-1",
+        "verify-open-1",
+        "energized-1",
+        "channel-b-1",
+        "analog-lost-3-1",
+        "input-9-1",
+        "input-10-2",
+        "input-10-3",
+        "local-4",
+        "thermal-4",
+        "manual-4",
+    ] {
+        assert!(!line.network.inject(name.parse().unwrap()), "{name}");
+    }
+    assert!(line.network.troubles().is_empty());
+    for (name, same) in [("user-fault-0-2", "user-fault-2"), ("input-1-2", "input-2")] {
+        let trouble: Trouble = name.parse().unwrap();
+        assert_eq!(trouble.to_string(), same);
+    }
 }
 
 /// Section 4.3.1: bits 10 and 11 as each type reports them.
@@ -503,22 +737,45 @@ fn troubles_by_name() {
         Trouble::Short(250),
         Trouble::Port(HostPort::Two),
     ];
-    all.extend(UnitTrouble::ALL.map(|what| Trouble::Unit(7, what)));
-    let mut line = Line::new(DdcShape::Loop, &[MX; 8]);
+    all.extend(UnitTrouble::all().map(|what| Trouble::Unit(7, what)));
+    let mut line = Line::new(DdcShape::Loop, &[UEC; 8]);
+    let mut count = 0;
     for trouble in all {
         assert_eq!(trouble.to_string().parse(), Ok(trouble));
-        let there = trouble != Trouble::Short(250);
-        assert_eq!(line.network.inject(trouble), there);
+        let there = match trouble {
+            Trouble::Short(250) => false,
+            // Those of an I/O module.
+            Trouble::Unit(_, UnitTrouble::Input(n)) => n < 10,
+            _ => true,
+        };
+        assert_eq!(line.network.inject(trouble), there, "{trouble}");
         assert!(!line.network.inject(trouble), "only once");
+        count += usize::from(there);
     }
-    assert_eq!(line.network.troubles().len(), 11);
+    // 20 without a number; 10 user faults, 4 analog inputs, 16 timers, 10 inputs, 6 states.
+    assert_eq!((line.network.troubles().len(), count), (68, 68));
     for trouble in line.network.troubles().to_vec() {
         assert!(line.network.heal(trouble) && !line.network.heal(trouble));
     }
     line.register(7, 9);
     assert!(!line.network.inject(Trouble::Unit(99, UnitTrouble::Off)));
     for wrong in [
-        "", "off", "off-", "off-256", "port-3", "break--1", "gone-1", "break-x",
+        "",
+        "off",
+        "off-",
+        "off-256",
+        "port-3",
+        "break--1",
+        "gone-1",
+        "break-x",
+        "off-1-7",
+        "user-fault-10-7",
+        "analog-lost-0-7",
+        "analog-lost-5-7",
+        "timer-16-7",
+        "state-6-7",
+        "input-20-7",
+        "user-7",
     ] {
         assert!(wrong.parse::<Trouble>().is_err(), "{wrong}");
     }

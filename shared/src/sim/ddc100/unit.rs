@@ -1,7 +1,7 @@
-//! A simulated field unit: what it senses, what its registers say, and its network watchdog.
+//! A simulated field unit: its troubles and its network watchdog.
 
-use super::drive::{Drive, Motion};
-use super::trouble::UnitTrouble;
+use super::drive::{Drive, OPEN};
+use super::trouble::UnitTrouble::{self, *};
 use crate::capture::Micros;
 use crate::ddc100::setup::Member;
 use crate::ddc100::{HostPort, Pair};
@@ -12,18 +12,6 @@ const WATCHDOG_S: u16 = 60;
 const SECOND: u64 = 1_000_000;
 /// UART resets before that of the processor.
 const UART_RESETS: u8 = 3;
-
-/// Troubles of a unit that are there.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Wrong {
-    pub off: bool,
-    pub deaf: bool,
-    pub local: bool,
-    pub stop: bool,
-    pub thermal: bool,
-    pub phase: bool,
-    pub local_esd: bool,
-}
 
 /// What the network watchdog of a UEC-3-DDC does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,9 +27,36 @@ enum Watch {
 /// Counters of the diagnostics (table 3.8).
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counters {
-    pub messages: u16,
+    /// Requests on the bus, for whomever. Answers of others, which pass it too, are not counted.
+    pub bus: u16,
+    /// Frames whose check did not hold.
+    pub damaged: u16,
+    /// Its answers that were exceptions.
     pub exceptions: u16,
-    pub unanswered: u16,
+    /// Requests for itself or for all that it carried out.
+    pub own: u16,
+}
+
+/// Bits of register 10 of a UEC-3-DDC: from where to where it was moved by hand.
+const MID_TO_OPEN: u32 = 6;
+const OPEN_TO_MID: u32 = 7;
+const MID_TO_CLOSE: u32 = 8;
+const CLOSE_TO_MID: u32 = 9;
+
+/// Somebody turns the handwheel: from an end half way, from half way to the nearer end.
+fn by_hand(drive: &mut Drive) -> u32 {
+    let half = OPEN / 2;
+    let (to, bit) = if drive.is_open() {
+        (half, OPEN_TO_MID)
+    } else if drive.is_closed() {
+        (half, CLOSE_TO_MID)
+    } else if drive.percent() >= 50 {
+        (OPEN, MID_TO_OPEN)
+    } else {
+        (0, MID_TO_CLOSE)
+    };
+    drive.put(to);
+    bit
 }
 
 /// A field unit.
@@ -49,7 +64,11 @@ pub(super) struct Counters {
 pub(super) struct Unit {
     pub(super) member: Member,
     pub(super) drive: Drive,
-    pub(super) wrong: Wrong,
+    troubles: Vec<UnitTrouble>,
+    /// How it was moved by hand: a bit of register 10 of a UEC-3-DDC.
+    pub(super) moved: u32,
+    /// Its inputs change with time.
+    pub(super) lively: bool,
     pub(super) network_esd: bool,
     /// Relays as the bits of register 11.
     pub(super) relays: u16,
@@ -61,9 +80,9 @@ pub(super) struct Unit {
     pub(super) was_reset: bool,
     pub(super) listens_only: bool,
     /// When it was last polled through each of its channels; `None` before the first time.
-    heard: Pair<Option<Micros>>,
+    pub(super) heard: Pair<Option<Micros>>,
     watch: Watch,
-    now: Micros,
+    pub(super) now: Micros,
 }
 
 impl Unit {
@@ -77,7 +96,9 @@ impl Unit {
         Self {
             member,
             drive: Drive::new(stroke.saturating_mul(SECOND)),
-            wrong: Wrong::default(),
+            troubles: Vec::new(),
+            moved: MID_TO_OPEN,
+            lively: false,
             network_esd: false,
             relays: 0,
             argument: 0,
@@ -107,59 +128,97 @@ impl Unit {
     }
 
     /// True if it takes in what comes: it has power, the right address, and is in no reset.
-    pub(super) const fn hears(&self) -> bool {
-        !self.wrong.off && !self.wrong.deaf && !matches!(self.watch, Watch::Resetting { .. })
+    pub(super) fn hears(&self) -> bool {
+        !self.has(Off) && !self.has(Deaf) && !matches!(self.watch, Watch::Resetting { .. })
+    }
+
+    /// True while a trouble is there.
+    pub(super) fn has(&self, trouble: UnitTrouble) -> bool {
+        self.troubles.contains(&trouble)
+    }
+
+    pub(super) fn is_local(&self) -> bool {
+        [Local, LocalOpen, LocalClose]
+            .into_iter()
+            .any(|t| self.has(t))
     }
 
     pub(super) fn is_remote(&self) -> bool {
-        !self.wrong.local && !self.wrong.stop
+        !self.is_local() && !self.has(Stop)
+    }
+
+    /// The local emergency shutdown, which is user input 0 by default (section 6.1, item 4).
+    pub(super) fn local_esd(&self) -> bool {
+        !self.is_io() && (self.has(LocalEsd) || self.has(Input(0)))
+    }
+
+    /// True if its motor can't run.
+    pub(super) fn is_stuck(&self) -> bool {
+        [Thermal, Phase, Sequence].into_iter().any(|t| self.has(t))
+    }
+
+    pub(super) const fn set_lively(&mut self) {
+        self.lively = true;
+    }
+
+    /// A request for whomever.
+    pub(super) const fn noticed(&mut self) {
+        self.counters.bus = self.counters.bus.wrapping_add(1);
+    }
+
+    /// A damaged frame.
+    pub(super) const fn damaged(&mut self) {
+        self.counters.damaged = self.counters.damaged.wrapping_add(1);
+    }
+
+    /// True if table 3.5 has something for the trouble in the column of its type.
+    pub(super) const fn knows(&self, trouble: UnitTrouble) -> bool {
+        let (mx, io) = (self.is_mx(), self.is_io());
+        match trouble {
+            Off | Deaf => true,
+            Local | LocalOpen | LocalClose | Stop | TorqueOpen | TorqueClose | Thermal | Phase
+            | Sequence | LocalEsd | Manual => !io,
+            Rotation | Energized | VerifyOpen | VerifyClose | VerifyOpenStays
+            | VerifyCloseStays => !io && !mx,
+            ChannelB | UserFault(_) | Timer(_) | State(_) => !mx,
+            AnalogLost(n) => n <= 2 || !mx,
+            Input(n) => n <= 8 || (n == 9 && !mx) || io,
+        }
     }
 
     /// A trouble begins or ends.
     pub(super) fn set(&mut self, trouble: UnitTrouble, on: bool) {
-        let wrong = &mut self.wrong;
+        self.troubles.retain(|t| *t != trouble);
+        if on {
+            self.troubles.push(trouble);
+        }
         match trouble {
-            UnitTrouble::Off => {
-                wrong.off = on;
+            Off => {
                 self.drive.stop();
                 self.relays = 0;
                 self.network_esd = false;
                 self.was_reset = true;
                 self.listens_only = false;
+                self.counters = Counters::default();
                 self.heard = Pair::default();
                 self.restart_watch();
             }
-            UnitTrouble::Deaf => wrong.deaf = on,
-            UnitTrouble::Local => wrong.local = on,
-            UnitTrouble::Stop => {
-                wrong.stop = on;
-                self.drive.stop();
-            }
-            UnitTrouble::TorqueOpen => {
+            Stop | Thermal | Phase | Sequence => self.drive.stop(),
+            TorqueOpen => {
                 self.drive.trips_opening = on;
                 self.drive.open_torque &= on;
             }
-            UnitTrouble::TorqueClose => {
+            TorqueClose => {
                 self.drive.trips_closing = on;
                 self.drive.close_torque &= on;
             }
-            UnitTrouble::Thermal => {
-                wrong.thermal = on;
-                self.drive.stop();
-            }
-            UnitTrouble::Phase => {
-                wrong.phase = on;
-                self.drive.stop();
-            }
-            UnitTrouble::LocalEsd => {
-                wrong.local_esd = on;
-                // The default of the emergency shutdown is to close (section 6.1, item 4).
-                if on {
-                    self.drive.go(0);
-                } else {
-                    self.drive.stop();
-                }
-            }
+            LocalOpen if on => self.drive.go(OPEN),
+            // The default of the emergency shutdown is to close (section 6.1, item 4).
+            LocalClose | LocalEsd if on => self.drive.go(0),
+            Input(0) if on && !self.is_io() => self.drive.go(0),
+            LocalOpen | LocalClose | LocalEsd | Input(0) => self.drive.stop(),
+            Manual if on => self.moved = by_hand(&mut self.drive),
+            _ => {}
         }
     }
 
@@ -179,7 +238,7 @@ impl Unit {
         };
     }
 
-    fn wait_us(&self) -> u64 {
+    pub(super) fn wait_us(&self) -> u64 {
         SECOND.saturating_mul(self.watchdog_s.into())
     }
 
@@ -192,10 +251,10 @@ impl Unit {
     pub(super) fn advance(&mut self, now: Micros) {
         let passed = now.since(self.now);
         self.now = self.now.max(now);
-        if self.wrong.off {
+        if self.has(Off) {
             return;
         }
-        if !self.wrong.thermal && !self.wrong.phase {
+        if !self.is_stuck() {
             self.drive.advance(passed);
         }
         if !self.is_mx() {
@@ -234,134 +293,4 @@ impl Unit {
             }
         }
     }
-
-    /// True if nothing came through a channel for as long as the watchdog waits.
-    fn timed_out(&self, channel: HostPort) -> bool {
-        let heard = self.heard.get(channel);
-        heard.is_none_or(|at| self.now.since(at) >= self.wait_us())
-    }
-
-    /// Register 9 (table 3.5).
-    pub(super) fn status(&self) -> u16 {
-        let (a, b) = (self.timed_out(HostPort::One), self.timed_out(HostPort::Two));
-        let channels = bits(&[(10, a), (11, b)]);
-        if self.is_io() {
-            return channels;
-        }
-        let d = &self.drive;
-        let moving = d.motion != Motion::Still;
-        let hot = self.wrong.thermal;
-        let combined = d.is_jammed() || hot || self.wrong.phase || (a && b);
-        // Without channel B the pair comes down to A; here that is the same, as B is set (D8).
-        channels
-            | bits(&[
-                (0, d.is_open()),
-                (1, d.is_closed()),
-                (2, !moving && !d.is_open() && !d.is_closed()),
-                (3, d.motion == Motion::Opening),
-                (4, d.motion == Motion::Closing),
-                (5, d.is_jammed()),
-                (6, !self.is_remote()),
-                (7, combined),
-                (8, hot),
-                (12, d.open_torque),
-                (13, d.close_torque),
-                (15, self.wrong.phase),
-            ])
-    }
-
-    /// Register 10.
-    pub(super) fn faults(&self) -> u16 {
-        if self.is_io() {
-            return 0;
-        }
-        bits(&[
-            (4, self.wrong.phase),
-            (10, self.network_esd),
-            (11, self.wrong.local_esd),
-            (12, self.was_reset),
-            (13, self.is_mx() && self.wrong.stop),
-        ])
-    }
-
-    /// Register 11.
-    pub(super) fn outputs(&self) -> u16 {
-        let contactors = bits(&[
-            (0, self.drive.motion == Motion::Closing),
-            (1, self.drive.motion == Motion::Opening),
-        ]);
-        let fixed = if self.is_mx() {
-            // The network relay.
-            1 << 9
-        } else {
-            // Software version.
-            0x2000
-        };
-        self.relays | contactors | fixed
-    }
-
-    /// Register 12.
-    pub(super) fn inputs_1(&self) -> u16 {
-        if self.is_io() {
-            return 0;
-        }
-        let d = &self.drive;
-        bits(&[
-            (0, self.is_remote()),
-            (1, self.wrong.thermal),
-            (
-                2,
-                d.open_torque || (d.is_jammed() && d.motion == Motion::Opening),
-            ),
-            (3, d.is_open()),
-            (
-                4,
-                d.close_torque || (d.is_jammed() && d.motion == Motion::Closing),
-            ),
-            (5, d.is_closed()),
-            (8, self.wrong.local_esd),
-            // Inverted by default: 1 is not active.
-            (11, true),
-        ])
-    }
-
-    /// Register 13.
-    pub(super) fn inputs_2(&self) -> u16 {
-        let both = self.timed_out(HostPort::One) && self.timed_out(HostPort::Two);
-        if self.is_mx() {
-            bits(&[(4, both), (6, true), (12, self.wrong.phase)])
-        } else {
-            bits(&[(4, both)])
-        }
-    }
-
-    /// A holding register by its number, 1 to 56; input registers 5 to 16 are the same.
-    pub(super) fn register(&self, number: u16) -> u16 {
-        let mx = self.is_mx();
-        match number {
-            2 => self.argument,
-            3 if mx => self.drive.percent(),
-            4 if mx && self.drive.motion != Motion::Still => 42,
-            5 if mx => 480,
-            5 | 6 if !mx => 0xFFFF,
-            8 if !self.is_io() => self.drive.percent(),
-            9 => self.status(),
-            10 => self.faults(),
-            11 => self.outputs(),
-            12 => self.inputs_1(),
-            13 => self.inputs_2(),
-            14 if !mx => bits(&[
-                (11, self.timed_out(HostPort::One)),
-                (12, self.timed_out(HostPort::Two)),
-            ]),
-            _ => 0,
-        }
-    }
-}
-
-/// A word of bits.
-fn bits(set: &[(u32, bool)]) -> u16 {
-    set.iter().fold(0, |word, (bit, on)| {
-        word | u16::from(*on).wrapping_shl(*bit)
-    })
 }

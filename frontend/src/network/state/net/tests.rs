@@ -8,6 +8,7 @@ pub(crate) fn network(units: u8, shape: DdcShape, ports: usize) -> Net {
         kind: "ddc100-uec".into(),
         tag: format!("MOV-{unit:03}"),
         description: String::new(),
+        scaling: None,
     };
     let lines = ["/dev/ttyS0", "/dev/ttyS1"];
     net.hear(DdcNews::Network {
@@ -22,6 +23,7 @@ pub(crate) fn network(units: u8, shape: DdcShape, ports: usize) -> Net {
         timeout_ms: 250,
         retries: 3,
         units: (1..=units).map(unit).collect(),
+        hint: None,
     });
     net
 }
@@ -118,11 +120,13 @@ fn passes_bear_a_diagnosis_out() {
     let unsettled = |net: &Net| net.diagnosis().unwrap().unsettled;
     assert_eq!(net.diagnosis().unwrap().findings[0].key(), "break");
     assert!(unsettled(&net) > 0);
-    let pass = |net: &mut Net, port| {
+    let mut number = 0;
+    let mut pass = |net: &mut Net, port| {
+        number += 1;
         net.hear(DdcNews::Pass {
             bus: "Loop".into(),
             port,
-            number: 1,
+            number,
             took_us: 1,
             expected_us: 1,
         });
@@ -165,4 +169,16 @@ fn a_read_that_was_asked_ends_once() {
     net.ask(8, 1);
     net.lost();
     assert_eq!(net.asked.unwrap().end.unwrap().0, Outcome::Down);
+}
+
+/// What the bridge says of a network and its units beside their names.
+#[test]
+fn hints_and_scalings_come_along() {
+    use shared::ddc100::scaling::Scaling;
+    let mut net = network(2, DdcShape::MultiDrop, 1);
+    assert_eq!(net.hint, None);
+    net.units[1].info.scaling = Some("0-4095".into());
+    assert_eq!(net.units[0].scaling(None), Scaling::Percent);
+    assert_eq!(net.units[1].scaling(None), Scaling::TwelveBits);
+    assert_eq!(net.units[1].scaling(Some(Scaling::Raw)), Scaling::Raw);
 }
