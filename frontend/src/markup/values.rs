@@ -13,6 +13,7 @@ use crate::components::icon::Glyph;
 use crate::format::age;
 use crate::state::health::{Freshness, freshness};
 use crate::state::order::{Column, Order};
+use crate::state::sorted::Columns as _;
 use crate::state::tree::{Facts, binary};
 use crate::state::values::{Cell, Item, RawForm, access, addresses, has_bits};
 

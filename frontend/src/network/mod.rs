@@ -22,10 +22,11 @@
 //! | tabs | `net-tab` (`data-tab`), `other-network`, `no-network` |
 //! | diagnosis | `finding` (`data-key`, `data-certain`), `caution` |
 //! | the drawing | `ring` (a list for those who do not see it), `node` (`data-unit`, `data-at`), `break` (`data-from`, `data-to`: stretches of the cable from 0; `data-kind` is `certain` or `possible`), `poll` (`data-port`), narrow: `cable-list`, `line-unit` |
-//! | ports and polling | `port` (`data-port`, `data-state`), `poll-now`, `passes`, `chosen-unit` (`data-unit`), `open-unit` |
-//! | all units | `unit-search`, `only-faults`, `unit-count`, `copy-units`, `save-units`, `sort-<column>`, `unit-list`, `unit-row` (`data-unit`; in it `data-bit` is `host-a`, `host-b`, `own-a`, `own-b`) |
-//! | a unit | `unit`, `unit-position`, `unit-state`, `unit-reach`, `to-network`, `unit-fault` (`data-key`), `checklist`, `wish`, `wish-percent`, `verdict` (`data-verdict`), `check-item` (`data-key`, `data-verdict`), `analog`, `scaling`, `analog-row`, `status`, `inputs`, `outputs`, `timers`, `user-faults`, `differences`, `counters`, `read-counters`, `counter` (`data-sub`), `read-registers`, `read-state`, `registers` |
-//! | tag list | `tags`, `tags-file`, `tags-paste`, `export-tags`, `forget-tags`, `import-said`, `tag-problem` (`data-line`, `data-column`), `tag-table`, `tag-row` (`data-unit`), `tag-strangers` |
+//! | ports and polling | `port` (`data-port`, `data-state`), `poll-now`, `passes`, `pass-table`, `chosen-unit` (`data-unit`), `open-unit` |
+//! | lately | `lately`, `log`, `log-row`, `copy-log`, `save-log` |
+//! | all units | `order-units`, `order-down`, `unit-search`, `only-faults`, `unit-count`, `copy-units`, `save-units`, `sort-<column>`, `unit-list`, `unit-row` (`data-unit`; in it `data-bit` is `host-a`, `host-b`, `own-a`, `own-b`) |
+//! | a unit | `unit`, `unit-position`, `unit-state`, `unit-reach`, `to-network`, `unit-before`, `unit-after`, `card-age`, `overwritten`, `unit-fault` and `old-fault` (`data-key`), `would-be`, `software`, `watched`, `checklist`, `wish`, `wish-percent`, `verdict` (`data-verdict`), `check-item` (`data-key`, `data-verdict`), `analog`, `scaling`, `analog-row`, `status`, `inputs`, `outputs`, `timers`, `user-faults`, `differences`, `counters`, `read-counters`, `counter` (`data-sub`), `read-registers`, `read-state`, `registers` |
+//! | tag list | `tags`, `tags-file`, `tags-paste`, `export-tags`, `forget-tags`, `import-said`, `tag-problem` (`data-line`, `data-column`), `tag-table`, `tag-row` (`data-unit`), `tag-strangers`, `tag-type` |
 //! | fault table | `fault-table`, `typed-shape`, `typed-units`, `typed-example`, `typed-take`, `typed-clear`, `typed-grid`, `typed-bit` (`data-at`, `data-port`), `typed-paste`, `typed-problem` |
 //! | scan time | `scan`, `scan-kind`, `scan-units`, `scan-registers`, `scan-baud`, `scan-framing`, `scan-turn`, `scan-time`, `scan-table` |
 

@@ -7,9 +7,10 @@ use std::time::Duration;
 use leptos::prelude::*;
 use shared::ddc100::counters;
 use shared::ddc100::tags::TagList;
-use shared::proto::{Block, DdcAsk, DdcNews, DeviceInfo, ToPage};
+use shared::proto::{Block, DdcAsk, DdcNews, DeviceInfo, TableName, ToPage};
 
-use super::state::net::Net;
+use super::markup::unit::WATCHED;
+use super::state::net::{Net, Unit};
 use super::state::tags::Tags;
 use super::state::unit::Judged;
 use crate::browser::{remember, remembered};
@@ -17,6 +18,7 @@ use crate::erased::{effect, memo};
 use crate::format::{decode, encode};
 use crate::guest::Guest;
 use crate::state::wire;
+use crate::task::now_ms;
 
 /// How long news are gathered before the screen is drawn anew.
 const GATHER: Duration = Duration::from_millis(200);
@@ -176,7 +178,11 @@ impl Store {
             if online && !bus.is_empty() {
                 store.send(&DdcAsk::Follow { bus: bus.clone() });
             } else {
-                store.net.update(Net::lost);
+                let now_ms = wall_ms();
+                store.net.update(|net| {
+                    net.log.now_ms = now_ms;
+                    net.lost();
+                });
             }
             followed.set_value(bus);
         });
@@ -201,7 +207,11 @@ impl Store {
             self.poll.set(Some((unit, port)));
             return;
         }
-        self.net.update_untracked(|net| net.hear(news));
+        let now_ms = wall_ms();
+        self.net.update_untracked(|net| {
+            net.log.now_ms = now_ms;
+            net.hear(news);
+        });
         self.draw_soon();
     }
 
@@ -242,6 +252,48 @@ impl Store {
         });
     }
 
+    /// Reads what the polls of a unit may leave out, unless that is under way, or nobody looks.
+    pub fn watch(self, unit: u8) {
+        let (first, last) = WATCHED;
+        let polled = self.net.with_untracked(|net| {
+            let end = u32::from(net.start) + u32::from(net.count);
+            net.start < first && end >= u32::from(last)
+        });
+        if polled || !self.online.get_untracked() || document().hidden() {
+            return;
+        }
+        let id = self.next.get_value();
+        let mut asks = false;
+        self.net.update_untracked(|net| asks = net.watch(id, unit));
+        if asks {
+            self.next.set_value(id.wrapping_add(1));
+            self.send(&DdcAsk::Read {
+                id,
+                bus: self.bus.get_untracked(),
+                unit,
+                block: Block {
+                    table: TableName::Holding,
+                    start: first - 1,
+                    count: last - first + 1,
+                },
+            });
+        }
+    }
+
+    /// The tags of the units, by their addresses; empty for one that has none. Follows them.
+    #[must_use]
+    pub fn names(self) -> Box<dyn Fn(u8) -> String> {
+        let all: Vec<(u8, String)> = self.net.with(|net| {
+            let tag = |tags: &Tags, unit: &Unit| (unit.info.unit, tags.tag(unit).to_owned());
+            self.tags
+                .with(|tags| net.units.iter().map(|unit| tag(tags, unit)).collect())
+        });
+        Box::new(move |unit| {
+            let found = all.iter().find(|(of, _)| *of == unit);
+            found.map_or_else(String::new, |(_, tag)| tag.clone())
+        })
+    }
+
     /// Reads the counters of a unit once.
     pub fn read_counters(self, unit: u8) {
         let bus = self.bus.get_untracked();
@@ -276,6 +328,16 @@ impl Store {
         remember(&list_key(&bus), &text);
         self.list.set(list.clone());
     }
+}
+
+/// Now, in milliseconds since 1970.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a positive number of milliseconds, far below 2^52"
+)]
+fn wall_ms() -> u64 {
+    now_ms().max(0.0) as u64
 }
 
 fn list_key(bus: &str) -> String {

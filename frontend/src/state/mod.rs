@@ -14,6 +14,7 @@ pub mod route;
 pub mod samples;
 pub mod selection;
 pub mod shortcuts;
+pub mod sorted;
 pub mod summary;
 pub mod traffic;
 pub mod tree;

@@ -1,12 +1,11 @@
 //! The order of the register browser: by a column, up or down.
 
-use core::cmp::Ordering;
-
 use shared::image::Image;
 use shared::map::row::Row;
 use shared::scale::Scale;
 use shared::value::Value;
 
+use super::sorted::{Columns, Key, places};
 use super::values::{Item, cell};
 
 /// A column that the list can be sorted by.
@@ -23,13 +22,10 @@ pub enum Column {
     Age,
 }
 
-impl Column {
-    /// All columns.
-    pub const ALL: [Self; 4] = [Self::Address, Self::Name, Self::Value, Self::Age];
+impl Columns for Column {
+    const ALL: &'static [Self] = &[Self::Address, Self::Name, Self::Value, Self::Age];
 
-    /// The word in the address bar.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
+    fn key(self) -> &'static str {
         match self {
             Self::Address => "address",
             Self::Name => "name",
@@ -37,7 +33,9 @@ impl Column {
             Self::Age => "age",
         }
     }
+}
 
+impl Column {
     /// The word over the column.
     #[must_use]
     pub const fn label(self) -> &'static str {
@@ -51,49 +49,9 @@ impl Column {
 }
 
 /// By which column the list is sorted, and which way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Order {
-    /// The column.
-    pub column: Column,
-    /// True for the largest first.
-    pub down: bool,
-}
+pub type Order = super::sorted::Order<Column>;
 
 impl Order {
-    /// Reads the setting of the address bar: `name`, `-name`; anything else is the order of the map.
-    #[must_use]
-    pub fn parse(text: &str) -> Self {
-        let key = text.strip_prefix('-');
-        let found = Column::ALL
-            .into_iter()
-            .find(|c| c.key() == key.unwrap_or(text));
-        Self {
-            column: found.unwrap_or_default(),
-            down: key.is_some() && found.is_some(),
-        }
-    }
-
-    /// The setting after a column was chosen: its order, or the other way round if it has it.
-    #[must_use]
-    pub fn after(self, chosen: &str) -> String {
-        let down = self.column.key() == chosen && !self.down;
-        match (down, chosen == Column::default().key()) {
-            (true, _) => format!("-{chosen}"),
-            (false, true) => String::new(),
-            (false, false) => chosen.to_owned(),
-        }
-    }
-
-    /// How a column is sorted, as ARIA says it.
-    #[must_use]
-    pub fn aria(self, column: Column) -> &'static str {
-        match (self.column == column, self.down) {
-            (false, _) => "none",
-            (true, false) => "ascending",
-            (true, true) => "descending",
-        }
-    }
-
     /// True if the order depends on what was read.
     #[must_use]
     pub const fn is_live(self) -> bool {
@@ -110,14 +68,7 @@ impl Order {
             return;
         }
         let keys: Vec<Key> = rows.iter().map(|row| self.key(row, image)).collect();
-        // Of a few thousand rows only their places move; the sorts of the standard library are
-        // several kilobytes for each type.
-        let mut places: Vec<usize> = Vec::with_capacity(rows.len());
-        for (at, key) in keys.iter().enumerate() {
-            let place =
-                places.partition_point(|other| keys[*other].compare(key, self.down).is_le());
-            places.insert(place, at);
-        }
+        let places = places(&keys, self.down);
         *rows = places.into_iter().map(|at| rows[at]).collect();
     }
 
@@ -129,7 +80,7 @@ impl Order {
             // The youngest has the latest time.
             Column::Age => image
                 .row(row)
-                .map_or(Key::None, |seen| Key::Time(u64::MAX - seen.at.get())),
+                .map_or(Key::None, |seen| Key::Count(u64::MAX - seen.at.get())),
         }
     }
 }
@@ -142,35 +93,6 @@ fn value(row: &'static Row, image: &Image) -> Key {
         Value::Number { raw, scale } => Key::Number(Scale::to_f64(scale, raw)),
         _ => cell(Item::Row(row), image)
             .map_or(Key::None, |c| Key::Text(c.text.to_ascii_lowercase())),
-    }
-}
-
-/// What a row is sorted by.
-enum Key {
-    Number(f64),
-    Time(u64),
-    Text(String),
-    None,
-}
-
-impl Key {
-    const fn rank(&self) -> u8 {
-        match self {
-            Self::Number(_) | Self::Time(_) => 0,
-            Self::Text(_) => 1,
-            Self::None => 2,
-        }
-    }
-
-    fn compare(&self, other: &Self, down: bool) -> Ordering {
-        let order = match (self, other) {
-            (Self::None, _) | (_, Self::None) => return self.rank().cmp(&other.rank()),
-            (Self::Number(a), Self::Number(b)) => a.total_cmp(b),
-            (Self::Time(a), Self::Time(b)) => a.cmp(b),
-            (Self::Text(a), Self::Text(b)) => a.cmp(b),
-            _ => self.rank().cmp(&other.rank()),
-        };
-        if down { order.reverse() } else { order }
     }
 }
 

@@ -1,16 +1,19 @@
 //! Could a command be given now? The checklist of section 6.2, from what was read of a unit.
 //!
-//! Nothing here gives a command. An item whose registers were not read is unknown, never passed.
+//! Nothing here gives a command. An item whose registers were not read, or too long ago, is unknown,
+//! never passed.
 
 mod items;
+mod notes;
+mod relays;
 
 use super::scaling::Scaling;
-use super::{Pair, tables};
-use crate::address::{Address, Table};
+use super::{Pair, command, tables};
 use crate::capture::Micros;
 use crate::device::Device;
 use crate::image::Image;
 use items::{Look, communication, range};
+use notes::notes;
 
 /// What somebody wants the unit to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,6 +30,10 @@ pub enum Wish {
     Engage(u8),
     /// Disengage a relay.
     Disengage(u8),
+    /// Start the emergency shutdown of the network.
+    StartEsd,
+    /// End it.
+    StopEsd,
 }
 
 impl Wish {
@@ -42,6 +49,8 @@ impl Wish {
             Self::Open => Some(256),
             Self::Stop => Some(512),
             Self::Close => Some(768),
+            Self::StartEsd => Some(1280),
+            Self::StopEsd => Some(1536),
             Self::MoveTo(percent) if percent <= 100 => {
                 Some(19_200_u16.saturating_add(percent.into()))
             }
@@ -54,11 +63,8 @@ impl Wish {
     /// What the type calls it: `Open`, `Engage AS-3`; `None` if the type must not be sent it.
     #[must_use]
     pub fn name(self, kind: Device) -> Option<String> {
-        let value = self.command()?;
-        let row = kind.map()?.row_at(Table::Holding, Address::new(0))?;
-        let member = row.set?.get(value.into())?;
-        let name = member.name(value.into());
-        (!name.ends_with("(do not use)")).then(|| name.into_owned())
+        let name = command::meaning(kind, self.command()?)?;
+        (!name.ends_with("(do not use)")).then_some(name)
     }
 
     const fn moves(self) -> bool {
@@ -66,11 +72,32 @@ impl Wish {
     }
 }
 
-/// How an item stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// When the list is gone through. What was read before `now` less `most` is too old to rely on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moment {
+    /// Now, by the clock of what was read.
+    pub now: Micros,
+    /// How old a value may be, in microseconds.
+    pub most: u64,
+    /// False while nothing new can come: without a connection everything is old.
+    pub online: bool,
+}
+
+impl Moment {
+    /// How long ago something was, if that is too long.
+    const fn too_old(self, at: Micros) -> Option<u64> {
+        let age = self.now.get().saturating_sub(at.get());
+        if age > self.most { Some(age) } else { None }
+    }
+}
+
+/// How an item stands, the worst last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Verdict {
     /// Nothing speaks against the command.
     Pass,
+    /// It can be given, but another one fits better.
+    Warn,
     /// Something was not read, or can't be read.
     Unknown,
     /// The command should not be given.
@@ -83,6 +110,7 @@ impl Verdict {
     pub const fn key(self) -> &'static str {
         match self {
             Self::Pass => "pass",
+            Self::Warn => "warn",
             Self::Unknown => "unknown",
             Self::Fail => "fail",
         }
@@ -119,12 +147,8 @@ impl Checklist {
     /// The worst of all items.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        let has = |verdict| self.items.iter().any(|i| i.verdict == verdict);
-        match (has(Verdict::Fail), has(Verdict::Unknown)) {
-            (true, _) => Verdict::Fail,
-            (false, true) => Verdict::Unknown,
-            (false, false) => Verdict::Pass,
-        }
+        let all = self.items.iter().map(|i| i.verdict);
+        all.max().unwrap_or(Verdict::Unknown)
     }
 }
 
@@ -137,6 +161,7 @@ pub fn checklist(
     image: &Image,
     faults: Pair<Option<bool>>,
     scaling: Scaling,
+    moment: Moment,
     wish: Wish,
 ) -> Checklist {
     let look = Look {
@@ -144,26 +169,39 @@ pub fn checklist(
         image,
         scaling,
         wish,
+        moment,
     };
-    let mut items = vec![communication(faults)];
+    let newest = image.iter().map(|(_, _, cell)| cell.at).max();
+    let mut items = vec![communication(faults, newest, moment)];
     items.extend(look.known());
     let relay = matches!(wish, Wish::Engage(_) | Wish::Disengage(_));
+    let esd = matches!(wish, Wish::StartEsd | Wish::StopEsd);
     let valve = kind != Device::Ddc100Io;
     // A network stop works in REMOTE and in LOCAL, whatever else is wrong (item 10).
-    if valve && (wish.moves() || relay) {
+    if valve && wish != Wish::Stop {
         items.push(look.remote());
     }
-    if valve && wish.moves() {
+    if valve && (wish.moves() || wish == Wish::StartEsd) {
         items.push(look.combined());
-        items.push(look.position());
-        items.push(look.torque());
-        items.push(look.shutdown());
-        if tables::is_fast(kind) {
-            items.push(look.local_stop());
+        if wish.moves() {
+            items.push(look.position());
         }
+        items.push(look.torque());
+    }
+    if valve && wish.moves() {
+        items.push(look.shutdown());
+    }
+    if valve && esd {
+        items.push(look.esd());
+    }
+    if valve && (wish.moves() || wish == Wish::StartEsd) && tables::is_fast(kind) {
+        items.push(look.local_stop());
     }
     if let Wish::MoveTo(percent) = wish {
         items.push(range(percent));
+        if valve {
+            items.push(look.scale());
+        }
     }
     if relay && wish.name(kind).is_some() {
         items.push(look.relay());
@@ -174,41 +212,8 @@ pub fn checklist(
     Checklist {
         wish,
         items,
-        notes: notes(wish),
+        notes: notes(kind, wish),
     }
-}
-
-/// What the guide says beside the list.
-fn notes(wish: Wish) -> Vec<(&'static str, &'static str)> {
-    let mut notes = vec![
-        (
-            "It goes between two polls, through the port of the pass; through the other one if the unit has a fault there.",
-            "sections 4.3.1 and 6.2, item 1",
-        ),
-        (
-            "It is sent once, and again only if no acknowledge came: repeating it can stop the valve.",
-            "section 6.2, item 6",
-        ),
-    ];
-    match wish {
-        Wish::Open | Wish::Close => notes.push((
-            "The unit stops by itself at the end, and turns round without a stop in between.",
-            "section 6.2, items 7 and 9",
-        )),
-        Wish::MoveTo(_) => notes.push((
-            "Only for actuators that are set up for position control, which no register tells; by function 06 or 16 (reading D22).",
-            "section 6.2, items 4 and 5",
-        )),
-        Wish::Stop => notes.push((
-            "A stop works in REMOTE and in LOCAL.",
-            "section 6.2, item 10",
-        )),
-        Wish::Engage(_) | Wish::Disengage(_) => notes.push((
-            "Where two relays work one device, the first is disengaged before the second is engaged.",
-            "section 6.2, item 3",
-        )),
-    }
-    notes
 }
 
 #[cfg(test)]

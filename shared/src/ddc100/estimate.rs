@@ -297,4 +297,16 @@ mod tests {
             257_292
         );
     }
+
+    /// Table 4.2 by hand: 24 units with 6 registers lie below 40 units with 10 registers.
+    #[test]
+    fn the_nearest_cell_is_not_below() {
+        let of = |units, registers| {
+            let cell = tables::nearest(units, registers)?;
+            Some((cell.units, cell.registers, cell.mx.text, cell.uec.text))
+        };
+        assert_eq!(of(24, 6), Some((40, 10, "2.5", "7.6")));
+        assert_eq!(of(10, 10), Some((10, 10, ".61", "1.9")));
+        assert_eq!(of(250, 56), None);
+    }
 }

@@ -16,6 +16,7 @@
 //! P8 of [`poller`] say what is done.
 
 pub mod checklist;
+pub mod command;
 pub mod counters;
 pub mod diagnosis;
 pub mod estimate;

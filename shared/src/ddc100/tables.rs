@@ -83,3 +83,12 @@ pub fn printed(kind: Device, units: u16, registers: u16) -> Option<Printed> {
     let cell = |s: &&ScanTime| s.units == units && s.registers == registers;
     SCAN_TIMES.iter().find(cell).map(|s| s.of(kind))
 }
+
+/// The cell of table 4.2 that is nearest to so many units and registers without being below either;
+/// `None` beyond the table.
+#[must_use]
+pub fn nearest(units: u16, registers: u16) -> Option<&'static ScanTime> {
+    let above = |s: &&ScanTime| s.units >= units && s.registers >= registers;
+    let all = SCAN_TIMES.iter().filter(above);
+    all.min_by_key(|s| (s.units, s.registers))
+}

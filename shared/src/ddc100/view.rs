@@ -191,6 +191,9 @@ pub struct View {
     pub position: Option<Analog>,
     /// Faults that are active: of registers 9, 10, 14 and 15.
     pub faults: Vec<Bit>,
+    /// Those that [`set_aside`](Self::set_aside) took out of them: active when their register was
+    /// read, but that was too long ago.
+    pub old_faults: Vec<Bit>,
     /// True if bit 7 of register 9 is not what the other bits make of it.
     pub combined_disputed: bool,
     /// All bits of register 9 and 16.
@@ -297,6 +300,7 @@ impl View {
             combined_disputed: kind != Device::Ddc100Io
                 && word.is_some_and(|w| combined(w) != (w & 1 << 7 != 0)),
             faults,
+            old_faults: Vec::new(),
             inputs: [12, 13]
                 .into_iter()
                 .flat_map(|n| bits(kind, image, n))
@@ -311,6 +315,31 @@ impl View {
             status: status.into_iter().chain(bits(kind, image, 16)).collect(),
         }
     }
+
+    /// Takes faults that were read before a moment out of the active ones: polls may leave their
+    /// register out, and the unit may have cleared them since.
+    pub fn set_aside(&mut self, before: Micros) {
+        let faults = core::mem::take(&mut self.faults);
+        let (old, fresh) = faults.into_iter().partition(|b: &Bit| b.at < before);
+        (self.old_faults, self.faults) = (old, fresh);
+    }
+}
+
+/// True if a type has named bits in a register, read or not. Those of the software version are
+/// none.
+#[must_use]
+pub fn has_bits(kind: Device, number: u16) -> bool {
+    let members = row_of(kind, number)
+        .and_then(|row| row.set.filter(|s| s.bits))
+        .map_or(&[][..], |s| s.members);
+    members.iter().any(|m| !m.key.starts_with("software_bit"))
+}
+
+/// True if a type has its software version in register 11 (reading D14).
+#[must_use]
+pub fn has_software(kind: Device) -> bool {
+    let set = row_of(kind, OUTPUTS).and_then(|row| row.set);
+    set.is_some_and(|s| s.members.iter().any(|m| m.key.starts_with("software_bit")))
 }
 
 /// What the valve does, from register 9.

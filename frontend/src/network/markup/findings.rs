@@ -5,12 +5,14 @@ use shared::ddc100::diagnosis::Diagnosis;
 use crate::markup::Markup;
 use crate::markup::device::sign;
 use crate::network::state::findings::sign as sign_of;
+use crate::network::state::names::named;
 
 /// Findings that are told at once; the rest is counted.
 const MOST: usize = 6;
 
-/// What the pattern of faults means, with what else it could be, and why.
-pub fn findings(html: &mut Markup, diagnosis: &Diagnosis) {
+/// What the pattern of faults means, with what else it could be, and why. `name` gives the tag of a
+/// unit, empty if it has none.
+pub fn findings(html: &mut Markup, diagnosis: &Diagnosis, name: &dyn Fn(u8) -> String) {
     html.open("ul", &[("class", "findings")]);
     for finding in diagnosis.findings.iter().take(MOST) {
         let certain = diagnosis.is_certain(finding);
@@ -26,10 +28,10 @@ pub fn findings(html: &mut Markup, diagnosis: &Diagnosis) {
             sign(html, mark, "18");
         }
         html.open("span", &[]);
-        html.text(&finding.to_string());
+        html.text(&named(&finding.to_string(), name));
         let why = finding.why();
         if !why.is_empty() {
-            html.text(" ").node("span", "quiet", &why);
+            html.text(" ").node("span", "quiet", &named(&why, name));
         }
         html.close("span").close("li");
     }
@@ -67,7 +69,15 @@ mod tests {
     fn a_break_is_told_and_doubt_has_its_reason() {
         let drawn = |units: &[(u8, [Option<bool>; 2])], shape, ports| {
             let mut html = Markup::new();
-            findings(&mut html, &diagnose(shape, &table(units, ports)).unwrap());
+            let name = |unit: u8| {
+                if unit == 9 {
+                    "MOV-9".to_owned()
+                } else {
+                    String::new()
+                }
+            };
+            let diagnosis = diagnose(shape, &table(units, ports)).unwrap();
+            findings(&mut html, &diagnosis, &name);
             html.finish()
         };
         let (no, yes) = (Some(false), Some(true));
@@ -80,7 +90,7 @@ mod tests {
             html.contains("data-key=\"break\" data-certain=\"true\""),
             "{html}"
         );
-        assert!(html.contains("between unit 3 and unit 9") && html.contains("sign-f"));
+        assert!(html.contains("between unit 3 and unit 9 (MOV-9)") && html.contains("sign-f"));
         let html = drawn(
             &[(1, [no, None]), (2, [yes, None])],
             DdcShape::SingleEnded,

@@ -7,6 +7,7 @@ use crate::format::{age, count, encode, millis, thousands};
 use crate::markup::Markup;
 use crate::markup::device::sign;
 use crate::network::state::net::{Net, Port};
+use crate::network::state::scan::table_4_2;
 
 /// The words for a shape.
 #[must_use]
@@ -31,8 +32,9 @@ pub fn address(bus: &str, tab: &str) -> String {
 }
 
 /// The tabs of a network, or of the offline side.
-const LIVE: [(&str, &str); 4] = [
+const LIVE: [(&str, &str); 5] = [
     ("", "Network"),
+    ("log", "Lately"),
     ("tags", "Tag list"),
     ("faults", "Fault table"),
     ("scan", "Scan time"),
@@ -102,7 +104,7 @@ pub fn tabs(html: &mut Markup, bus: &str, open: &str) {
     }
 }
 
-/// Why there is no network to see; nothing if there is one.
+/// Why there is no network to see, or what to look at although it is polled.
 pub fn missing(html: &mut Markup, bus: &str, net: &Net, online: bool) {
     if bus.is_empty() {
         return;
@@ -121,6 +123,9 @@ pub fn missing(html: &mut Markup, bus: &str, net: &Net, online: bool) {
              not polled as one: give it the kind \"ddc100\" in the configuration of the bridge."
         ));
         html.close("p");
+    } else if let Some(hint) = &net.hint {
+        html.open("p", &[("class", "notice"), ("data-testid", "net-hint")]);
+        html.text(hint).close("p");
     }
 }
 
@@ -222,6 +227,15 @@ pub fn passes(html: &mut Markup, net: &Net) {
         html.close("tr");
     }
     html.close("tbody").close("table");
+    html.open(
+        "p",
+        &[("class", "quiet net-small"), ("data-testid", "pass-table")],
+    );
+    html.text(&format!(
+        "Expected by table 4.1. Table 4.2: {}.",
+        table_4_2(net)
+    ))
+    .close("p");
     html.open("p", &[("class", "quiet net-small")]);
     html.text(&format!(
         "{} so far; turn time {} ms, time-out {} ms, {}",
@@ -354,6 +368,8 @@ mod tests {
         let html = drawn(|html| passes(html, &net));
         assert!(html.contains("0.98 s") && html.contains("1.01 s") && html.contains("not yet"));
         assert!(html.contains("3 passes so far; turn time 30 ms"));
+        // 9 registers are no line of table 4.2; the next are 10 units with 10 registers.
+        assert!(html.contains("Table 4.2: none for this; 10 units with 10 registers 1.9 s."));
         let html = drawn(|html| ports(html, &net));
         assert!(html.contains("data-state=\"down\"") && html.contains("cannot open"));
         assert_eq!(html.matches("sign-f").count(), 1);

@@ -1,10 +1,13 @@
 //! The program's screens as HTML text. Pure, tested natively.
 
+pub mod cards;
+pub mod check;
 pub mod counters;
 pub mod drawing;
 pub mod findings;
 pub mod head;
 pub mod line;
+pub mod log;
 pub mod scan;
 pub mod table;
 pub mod tags;

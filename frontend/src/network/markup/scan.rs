@@ -7,11 +7,12 @@ use shared::device::Device;
 use super::head::seconds;
 use crate::format::millis;
 use crate::markup::Markup;
-use crate::network::state::scan::{BAUDS, KINDS, Scan};
+use crate::network::state::scan::{BAUDS, KINDS, Mixed, Scan};
 use crate::network::state::unit::kind;
 
 /// What is entered.
-pub fn controls(html: &mut Markup, scan: &Scan) {
+/// `here` are the types of the network that is shown; empty without one.
+pub fn controls(html: &mut Markup, scan: &Scan, here: &str) {
     let choice =
         |html: &mut Markup, act: &str, words: &str, value: &str, all: &[(String, String)]| {
             html.open("label", &[("class", "choice")]).text(words);
@@ -50,8 +51,14 @@ pub fn controls(html: &mut Markup, scan: &Scan) {
         );
         html.close("label");
     };
-    let kinds = KINDS.map(|k| (k.key().to_owned(), kind(k).to_owned()));
-    choice(html, "kind", "Type", scan.kind.key(), &kinds);
+    let mut kinds: Vec<_> = KINDS
+        .map(|k| (k.key().to_owned(), kind(k).to_owned()))
+        .into();
+    if !here.is_empty() {
+        kinds.insert(0, ("here".to_owned(), format!("as here: {here}")));
+    }
+    let of = scan.kind.map_or("here", |kind| kind.key());
+    choice(html, "kind", "Type", of, &kinds);
     number(html, "units", "Units", scan.units, "250");
     number(html, "registers", "Registers of each", scan.registers, "56");
     let bauds = BAUDS.map(|b| (b.to_string(), b.to_string()));
@@ -94,6 +101,40 @@ pub fn result(html: &mut Markup, scan: &Scan, estimate: &Estimate) {
     };
     fact(html, "Table 4.2 prints", &printed);
     html.close("dl");
+    turn(html, scan);
+}
+
+/// The estimate for the network that is shown, each unit by its type.
+pub fn mixed(html: &mut Markup, scan: &Scan, (here, mixed): (&str, Mixed), printed: &str) {
+    html.open("p", &[("class", "big"), ("data-testid", "scan-time")]);
+    html.text(&seconds(mixed.scan_us)).close("p");
+    html.node(
+        "p",
+        "",
+        &format!(
+            "{here}: each by table 4.1 of its type or the nearest one, and {} ms turn time.",
+            scan.turn_ms
+        ),
+    );
+    html.open("dl", &[("class", "fact-list")]);
+    for (label, text) in [
+        ("Without turn time", seconds(mixed.bare_us).as_str()),
+        (
+            "The least that the line allows",
+            &format!(
+                "{} for characters and silences only",
+                seconds(mixed.least_us)
+            ),
+        ),
+        ("Table 4.2 prints", printed),
+    ] {
+        crate::markup::facts::fact(html, label, text);
+    }
+    html.close("dl");
+    turn(html, scan);
+}
+
+fn turn(html: &mut Markup, scan: &Scan) {
     if !(21..50).contains(&scan.turn_ms) {
         html.node(
             "p",
@@ -181,9 +222,9 @@ mod tests {
     fn the_estimate_stands_beside_the_print() {
         let scan = Scan::default();
         let mut html = Markup::new();
-        controls(&mut html, &scan);
+        controls(&mut html, &scan, "");
         result(&mut html, &scan, &scan.estimate().unwrap());
-        tables(&mut html, scan.kind);
+        tables(&mut html, Device::Ddc100Mx);
         let html = html.finish();
         assert!(html.contains("data-testid=\"scan-time\">1.42 s<"), "{html}");
         assert!(html.contains(".98 s, without turn time"));
@@ -194,5 +235,28 @@ mod tests {
             "lines of table 4.2"
         );
         assert_eq!(html.matches("bit-on").count(), 2);
+    }
+
+    #[test]
+    fn a_mixed_network_has_its_own_estimate() {
+        let scan = Scan {
+            kind: None,
+            ..Scan::default()
+        };
+        let of = Mixed {
+            scan_us: 1_154_000,
+            bare_us: 854_000,
+            least_us: 400_000,
+        };
+        let mut html = Markup::new();
+        controls(&mut html, &scan, "4 MX-DDC, 6 UEC-3-DDC");
+        mixed(&mut html, &scan, ("4 MX-DDC, 6 UEC-3-DDC", of), "1.4 s");
+        let html = html.finish();
+        assert!(
+            html.contains("value=\"here\" selected=\"\">as here: 4 MX-DDC"),
+            "{html}"
+        );
+        assert!(html.contains("data-testid=\"scan-time\">1.15 s<"));
+        assert!(html.contains("0.85 s") && html.contains("<dd>1.4 s") || html.contains(">1.4 s<"));
     }
 }

@@ -6,15 +6,21 @@ use shared::ddc100::view::{Analog, Own};
 use crate::components::icon::Glyph;
 use crate::format::{age, millis};
 use crate::markup::Markup;
-use crate::markup::control::{Button, search, tick};
+use crate::markup::control::{Button, Choice, search, tick};
 use crate::markup::device::sign;
 use crate::network::state::net::{Net, Reach, Unit};
 use crate::network::state::table::{Column, Order};
 use crate::network::state::tags::Tags;
 use crate::network::state::unit::{Judged, kind};
+use crate::state::sorted::Columns as _;
 
 /// Search, filter and what can be done with the rows.
-pub fn tools(html: &mut Markup, query: &str, only_faults: bool, shown: usize, all: usize) {
+pub fn tools(
+    html: &mut Markup,
+    (query, only_faults): (&str, bool),
+    order: Order,
+    (shown, all): (usize, usize),
+) {
     search(
         html,
         "q",
@@ -56,6 +62,21 @@ pub fn tools(html: &mut Markup, query: &str, only_faults: bool, shown: usize, al
         ..Button::default()
     }
     .draw(html);
+    // Where there is no room for a head.
+    html.open("span", &[("class", "narrow-sort")]);
+    Choice {
+        act: "order",
+        testid: "order-units",
+        label: "Sort by",
+        value: order.column.key(),
+        ..Choice::default()
+    }
+    .draw(html, Column::ALL.iter().map(|c| (c.key(), c.label())));
+    tick(html, "down", "order-down", "Reversed", order.down);
+    html.close("span");
+    html.open("span", &[("class", "quiet net-small")]);
+    html.text("n/f: not fitted. Without the board of channel B its bit is always 1.")
+        .close("span");
 }
 
 /// Columns of the head: class, words, and the column that it sorts by.
@@ -67,7 +88,7 @@ const HEAD: [(&str, &str, Option<Column>); 11] = [
     ("", "Type", None),
     ("num", "", Some(Column::Position)),
     ("", "", Some(Column::Status)),
-    ("", "Faults", None),
+    ("", "", Some(Column::Faults)),
     ("", "Host A B / own A B", None),
     ("num", "", Some(Column::Age)),
     ("num", "", Some(Column::Response)),
@@ -193,15 +214,11 @@ pub fn own(html: &mut Markup, own: Own, testid: &str) {
         Own::Fault => ("bit-on", "1"),
         Own::NotFitted => ("quiet", "1"),
     };
-    html.open(
-        "span",
-        &[
-            ("class", class),
-            ("data-bit", testid),
-            ("title", own.label()),
-        ],
-    );
+    html.open("span", &[("class", class), ("data-bit", testid)]);
     html.text(text).close("span");
+    if own == Own::NotFitted {
+        html.node("i", "quiet", " n/f");
+    }
 }
 
 /// The position with its bar.
@@ -261,7 +278,7 @@ mod tests {
 
     fn drawn(net: &Net, tags: &Tags, at: usize) -> String {
         let mut html = Markup::new();
-        let judged = Judged::of(&net.units[at], net.ports.len(), tags);
+        let judged = Judged::of(&net.units[at], net, tags);
         row(&mut html, net, tags, (at, &judged), 8_000_000);
         html.finish()
     }
@@ -274,7 +291,7 @@ mod tests {
         let html = drawn(&net, &Tags::default(), 0);
         assert!(html.contains("<span class=\"bit-on\" data-bit=\"host-b\">1</span>"));
         // The bit of a channel that the type does not have is no alarm.
-        assert!(html.contains("<span class=\"quiet\" data-bit=\"own-b\" title=\"not fitted"));
+        assert!(html.contains("data-bit=\"own-b\">1</span><i class=\"quiet\"> n/f</i>"));
         assert!(html.contains("<span class=\"quiet\" data-bit=\"host-a\">0</span>"));
         assert!(html.contains(">61 %<svg"));
         assert!(html.contains(">Open · Local or stop</span>") && html.contains("3.0 s"));
@@ -325,5 +342,20 @@ mod tests {
         let html = html.finish();
         assert!(html.contains("data-testid=\"sort-age\" data-order=\"descending\""));
         assert_eq!(html.matches(" ▼").count(), 1);
+        assert!(html.contains("sort-faults"));
+    }
+
+    #[test]
+    fn a_narrow_screen_sorts_by_a_list() {
+        let mut html = Markup::new();
+        tools(&mut html, ("", false), Order::parse("-faults"), (2, 4));
+        let html = html.finish();
+        assert!(
+            html.contains("value=\"faults\" selected=\"\">Faults"),
+            "{html}"
+        );
+        assert!(html.contains("2 of 4") && html.contains("n/f: not fitted"));
+        assert_eq!(html.matches("<option").count(), 10);
+        assert!(html.contains("data-testid=\"order-down\" data-value=\"on\""));
     }
 }

@@ -6,6 +6,7 @@ use crate::components::icon::Glyph;
 use crate::format::count;
 use crate::markup::Markup;
 use crate::markup::control::Button;
+use crate::network::state::list::contradictions;
 use crate::network::state::net::Net;
 use crate::network::state::tags::Tags;
 use crate::network::state::unit::kind;
@@ -94,23 +95,35 @@ pub fn units(html: &mut Markup, net: &Net, tags: &Tags, list: &TagList) {
             .close("th");
         html.node("td", "", tags.description(unit));
         html.node("td", "quiet", kind(unit.device));
-        html.node("td", "", tags.scaling(number).key());
+        html.node("td", "", tags.scaling(unit, 8).key());
         html.open("td", &[]).open("div", &[("class", "tag-points")]);
         for point in list.tags.iter().filter(|t| t.unit == number) {
             let Some(register) = point.register else {
                 continue;
             };
-            html.open("span", &[("title", &point.description)]);
+            html.open("span", &[]);
             html.text(&format!("{} ", point.tag));
+            if !point.description.is_empty() {
+                html.node("span", "quiet", &format!("{} ", point.description));
+            }
             html.node("code", "quiet", &(40_000 + u32::from(register)).to_string());
             if let Some(data) = point.data {
                 html.node("code", "quiet", &format!(" = {data}"));
+            }
+            if register != 8 && point.scaling.is_some() {
+                let scaling = tags.scaling(unit, register).key();
+                html.node("span", "quiet", &format!(" scaled {scaling}"));
             }
             html.close("span");
         }
         html.close("div").close("td").close("tr");
     }
     html.close("tbody").close("table");
+    for text in contradictions(net, list) {
+        html.open("p", &[("class", "notice"), ("data-testid", "tag-type")])
+            .text(&text)
+            .close("p");
+    }
     let known = |unit: u8| net.units.iter().any(|u| u.info.unit == unit);
     let strangers: Vec<String> = (1..=250)
         .filter(|unit| list.of_unit(*unit).is_some() && !known(*unit))
@@ -140,7 +153,7 @@ mod tests {
     fn a_list_is_shown_with_what_is_wrong() {
         let net = network(2, DdcShape::Loop, 2);
         let list = TagList::read(
-            "Tag name,Description,Unit,Register,Command data\nXV-1,Inlet,1,,\nXV-1-O,Open,1,40001,256\nXV-9,x,9,,\nXV-2,y,700,,\n",
+            "Tag name,Description,Unit,Register,Command data,Type\nXV-1,Inlet,1,,,ddc100-mx\nXV-1-O,Open,1,40001,256,\nXV-9,x,9,,,\nXV-2,y,700,,,\n",
         );
         let tags = laid_over(&Tags::default(), &list);
         let mut html = Markup::new();
@@ -150,7 +163,10 @@ mod tests {
         let html = html.finish();
         assert!(html.contains("data-line=\"5\""), "{html}");
         assert!(html.contains(">XV-1</th>") && html.contains(">MOV-002</th>"));
-        assert!(html.contains("XV-1-O <code class=\"quiet\">40001</code>"));
+        assert!(html.contains(
+            "XV-1-O <span class=\"quiet\">Open </span><code class=\"quiet\">40001</code>"
+        ));
+        assert!(html.contains("The list says that unit 1 is MX"));
         assert!(html.contains(" = 256") && html.contains("not on this network: 9."));
     }
 }

@@ -1,28 +1,30 @@
-//! A unit: what it does, what is wrong, whether it could be commanded, all that it says.
+//! A unit: what it does, what is wrong, all of its registers.
 
 use shared::address::{Address, Table};
-use shared::ddc100::checklist::{Checklist, Verdict};
-use shared::ddc100::scaling::{Scaled, Scaling};
-use shared::ddc100::view::{Bit, View};
+use shared::ddc100::scaling::Scaling;
+use shared::ddc100::words::{STATUS, register};
 use shared::device::Device;
 use shared::map::row::{Kind, Row};
 use shared::proto::Outcome;
 
+use super::cards::Cards;
 use super::head::address;
-use super::table::{bar, bit, own, since};
+use super::table::{bit, own, since};
 use crate::components::icon::Glyph;
 use crate::components::ne107::Sign;
-use crate::format::{age, millis};
+use crate::format::{age, encode, millis};
 use crate::markup::Markup;
-use crate::markup::control::{Button, Choice};
+use crate::markup::control::Button;
 use crate::markup::device::sign;
-use crate::network::state::net::{Asked, Net, Unit};
+use crate::network::state::net::{Net, Reach, Unit};
 use crate::network::state::tags::Tags;
 use crate::network::state::unit::{Judged, kind, place};
 use crate::state::health::outcome;
 
 /// Registers that a unit has, as printed.
 pub const REGISTERS: u16 = 56;
+/// Registers that the page of a unit reads by itself, as printed.
+pub const WATCHED: (u16, u16) = (3, 16);
 
 /// Where the unit is, what its valve does, and when that was so.
 pub fn head(
@@ -31,9 +33,11 @@ pub fn head(
     net: &Net,
     (unit, judged): (&Unit, &Judged),
     tags: &Tags,
-    now_us: u64,
+    (now_us, online): (u64, bool),
 ) {
-    html.open("p", &[("class", "big"), ("data-testid", "unit-position")]);
+    let stale = is_stale(net, unit, online);
+    let class = if stale { "big stale" } else { "big" };
+    html.open("p", &[("class", class), ("data-testid", "unit-position")]);
     match &judged.view.position {
         Some(position) => {
             html.text(&position.to_string());
@@ -46,17 +50,41 @@ pub fn head(
     html.open("div", &[("class", "unit-now")]);
     html.open(
         "p",
-        &[("class", "big-state"), ("data-testid", "unit-state")],
+        &[
+            (
+                "class",
+                if stale {
+                    "big-state stale"
+                } else {
+                    "big-state"
+                },
+            ),
+            ("data-testid", "unit-state"),
+        ],
     );
     if let Some(mark) = judged.health.sign() {
         sign(html, mark, "20");
         html.text(" ");
     }
-    html.text(&judged.view.state);
+    let mut state = judged.view.state.clone();
     // An I/O module has no selector; its register 12 holds inputs of the user.
     if unit.device != Device::Ddc100Io {
-        html.text(" · ").text(judged.view.mode.label());
+        state.push_str(" · ");
+        state.push_str(judged.view.mode.label());
     }
+    html.text(&match (stale, unit.newest().filter(|_| judged.known)) {
+        (false, _) => state,
+        (true, read) => {
+            let why = if online { "off-line" } else { "no connection" };
+            match read {
+                Some(at) => {
+                    let old = age(now_us.saturating_sub(at));
+                    format!("{why}; was: {state}, {old} ago")
+                }
+                None => why.to_owned(),
+            }
+        }
+    });
     html.close("p");
     let reach = unit.reach(net.ports.len());
     html.open("p", &[("data-testid", "unit-reach")]);
@@ -70,6 +98,10 @@ pub fn head(
     ));
     if let Some(took) = unit.took {
         html.text(&format!(", after {}", millis(took)));
+    }
+    if let Some(at) = judged.view.at {
+        let old = age(now_us.saturating_sub(at.get()));
+        html.text(&format!("; oldest of registers 3 to 16: {old}"));
     }
     html.close("p");
     if !unit.text.is_empty() {
@@ -95,12 +127,65 @@ pub fn head(
         &[("href", &address(bus, "")), ("data-testid", "to-network")],
     );
     html.text(bus).close("a").close("p");
+    neighbours(html, net, at, tags);
     html.close("div");
 }
 
+/// True if what is known of a unit is not what it says now.
+#[must_use]
+pub fn is_stale(net: &Net, unit: &Unit, online: bool) -> bool {
+    !online || unit.reach(net.ports.len()) == Reach::Lost
+}
+
+/// The units before and after place `at`, from 1, along the cable.
+fn neighbours(html: &mut Markup, net: &Net, at: usize, tags: &Tags) {
+    html.open(
+        "nav",
+        &[
+            ("class", "unit-neighbours net-small"),
+            ("aria-label", "Along the cable"),
+        ],
+    );
+    let last = if net.ports.len() > 1 {
+        "host port 2"
+    } else {
+        "end of the cable"
+    };
+    for (testid, next, end, arrow) in [
+        ("unit-before", at.checked_sub(2), "host port 1", "\u{2190} "),
+        ("unit-after", Some(at), last, "\u{2192} "),
+    ] {
+        let Some(unit) = next.and_then(|at| net.units.get(at)) else {
+            html.node("span", "quiet", &format!("{arrow}{end}"));
+            continue;
+        };
+        html.open(
+            "a",
+            &[
+                ("href", &format!("#/device/{}", encode(&unit.info.tag))),
+                ("data-testid", testid),
+            ],
+        );
+        html.text(&format!("{arrow}{} {}", unit.info.unit, tags.tag(unit)))
+            .close("a");
+    }
+    html.close("nav");
+}
+
 /// The faults: of the host, of the unit's own channels, and its fault bits.
-pub fn faults(html: &mut Markup, unit: &Unit, judged: &Judged) {
+pub fn faults(html: &mut Markup, net: &Net, judged: &Judged, cards: &Cards<'_>) {
+    let unit = cards.unit;
     html.node("h3", "", "Faults");
+    html.open(
+        "p",
+        &[("class", "quiet net-small"), ("data-testid", "card-age")],
+    );
+    html.text(&cards.ages(&[9, 10, 14, 15])).close("p");
+    if cards.stale {
+        html.open("div", &[("class", "stale")]);
+    } else {
+        html.open("div", &[]);
+    }
     html.open("table", &[("class", "plain unit-channels")]);
     html.open("thead", &[]).open("tr", &[]);
     for words in ["1 is a fault", "Channel A", "Channel B"] {
@@ -134,6 +219,18 @@ pub fn faults(html: &mut Markup, unit: &Unit, judged: &Judged) {
         html.close("td");
     }
     html.close("tr").close("tbody").close("table");
+    let word = register(&unit.image, STATUS).map(|cell| cell.word);
+    if let (Some(word), Some(table)) = (word, net.table()) {
+        let stored = table.overwritten(unit.info.unit, word);
+        html.open(
+            "p",
+            &[("class", "quiet net-small"), ("data-testid", "overwritten")],
+        );
+        html.text(&format!(
+            "Register 9 is {word:04X} as received, {stored:04X} as a host stores it that overwrites bits 10 and 11 with its own (section 4.3.1)."
+        ));
+        html.close("p");
+    }
     if judged.view.faults.is_empty() {
         let words = if judged.known {
             "No fault bit is set."
@@ -162,6 +259,26 @@ pub fn faults(html: &mut Markup, unit: &Unit, judged: &Judged) {
         }
         html.close("ul");
     }
+    if !judged.view.old_faults.is_empty() {
+        html.node(
+            "p",
+            "net-small",
+            "Set when they were read, but not read again since; the unit may have cleared them, so they do not count:",
+        );
+        html.open("ul", &[("class", "conditions quiet")]);
+        for fault in &judged.view.old_faults {
+            html.open(
+                "li",
+                &[("data-testid", "old-fault"), ("data-key", fault.member.key)],
+            );
+            html.node("span", "", fault.member.label);
+            html.node("code", "", &place(fault));
+            let old = age(cards.now_us.saturating_sub(fault.at.get()));
+            html.node("span", "net-small", &format!("{old} ago"))
+                .close("li");
+        }
+        html.close("ul");
+    }
     if judged.view.combined_disputed {
         html.node(
             "p",
@@ -169,232 +286,13 @@ pub fn faults(html: &mut Markup, unit: &Unit, judged: &Judged) {
             "The combined fault is not what the other bits make of it (note 3 of table 3.5, reading D8).",
         );
     }
-}
-
-/// What somebody might want, and where to.
-pub fn wishes(html: &mut Markup, choices: &[(String, String)], wish: &str, percent: u8) {
-    html.node("h3", "", "Could a command be given now?");
-    html.open("div", &[("class", "toolbar wishes")]);
-    Choice {
-        act: "wish",
-        testid: "wish",
-        label: "Command",
-        none: "Choose a command",
-        value: wish,
-        ..Choice::default()
-    }
-    .draw(
-        html,
-        choices
-            .iter()
-            .map(|(key, name)| (key.as_str(), name.as_str())),
-    );
-    if wish == "move" {
-        let value = percent.to_string();
-        html.open("label", &[("class", "choice")]).text("to");
-        html.open(
-            "input",
-            &[
-                ("type", "number"),
-                ("min", "0"),
-                ("max", "100"),
-                ("data-act", "percent"),
-                ("data-testid", "wish-percent"),
-                ("data-value", &value),
-                ("value", &value),
-                ("aria-label", "Position in percent"),
-            ],
-        );
-        html.text("%").close("label");
-    }
     html.close("div");
 }
 
-/// The checklist of section 6.2.
-pub fn checklist(html: &mut Markup, list: &Checklist, now_us: u64) {
-    let (mark, words) = match list.verdict() {
-        Verdict::Pass => (None, "Nothing speaks against it now."),
-        Verdict::Unknown => (
-            Some(Sign::OutOfSpecification),
-            "Not known: something was not read.",
-        ),
-        Verdict::Fail => (Some(Sign::Failure), "It should not be given now."),
-    };
-    html.open(
-        "p",
-        &[
-            ("class", "verdict"),
-            ("data-testid", "verdict"),
-            ("data-verdict", list.verdict().key()),
-        ],
-    );
-    if let Some(mark) = mark {
-        sign(html, mark, "18");
-        html.text(" ");
-    }
-    html.node("b", "", words).close("p");
-    html.open("ul", &[("class", "checklist")]);
-    for item in &list.items {
-        html.open(
-            "li",
-            &[
-                ("data-testid", "check-item"),
-                ("data-key", item.key),
-                ("data-verdict", item.verdict.key()),
-            ],
-        );
-        let (class, letter) = match item.verdict {
-            Verdict::Pass => ("check-mark", "\u{2713}"),
-            Verdict::Unknown => ("check-mark", "?"),
-            Verdict::Fail => ("check-mark fail", "\u{2717}"),
-        };
-        html.node("b", class, letter);
-        html.open("span", &[]).text(&item.text).text(" ");
-        html.node("span", "quiet net-small", item.source);
-        if let Some(at) = item.at {
-            let old = format!(", read {} ago", age(now_us.saturating_sub(at.get())));
-            html.node("span", "quiet net-small", &old);
-        }
-        html.close("span").close("li");
-    }
-    html.close("ul");
-    html.open("ul", &[("class", "check-notes quiet net-small")]);
-    for (text, source) in &list.notes {
-        html.node("li", "", &format!("{text} ({source})"));
-    }
-    html.node("li", "", "Nothing is sent from here: this page only reads.");
-    html.close("ul");
-}
-
-/// A card of bits: those that are active stand out, the rest is quiet.
-pub fn bits(html: &mut Markup, title: &str, testid: &str, bits: &[Bit]) {
-    html.open(
-        "section",
-        &[("class", "unit-card"), ("data-testid", testid)],
-    );
-    html.node("h3", "", title);
-    if bits.is_empty() {
-        html.node("p", "quiet", "This type has none, or they were not read.");
-    }
-    html.open("ul", &[("class", "unit-bit-list")]);
-    for bit in bits {
-        let on = bit.is_active();
-        html.open(
-            "li",
-            &[
-                ("class", if on { "on" } else { "quiet" }),
-                ("data-key", bit.member.key),
-                ("data-on", if on { "1" } else { "0" }),
-            ],
-        );
-        html.node("code", "", &place(bit));
-        html.node("span", "", bit.member.label);
-        html.node("span", "bit-words", bit.text()).close("li");
-    }
-    html.close("ul").close("section");
-}
-
-/// The analog values, with how they count.
-pub fn analog(html: &mut Markup, view: &View, scaling: Scaling) {
-    html.open(
-        "section",
-        &[("class", "unit-card"), ("data-testid", "analog")],
-    );
-    html.node("h3", "", "Analog values");
-    html.open("label", &[("class", "choice")]).text("Scale ");
-    html.open(
-        "select",
-        &[
-            ("data-act", "scaling"),
-            ("data-testid", "scaling"),
-            ("data-value", scaling.key()),
-            ("aria-label", "How the analog values of this unit count"),
-        ],
-    );
-    for choice in Scaling::ALL {
-        let mut attributes = vec![("value", choice.key())];
-        if choice == scaling {
-            attributes.push(("selected", ""));
-        }
-        html.open("option", &attributes)
-            .text(choice.key())
-            .close("option");
-    }
-    html.close("select").close("label");
-    html.node(
-        "p",
-        "quiet net-small",
-        "A setting of the unit that no register tells (reading D7); remembered here for this unit.",
-    );
-    html.open("table", &[("class", "plain unit-analog")])
-        .open("tbody", &[]);
-    for value in &view.analog {
-        let register = (u32::from(value.row.address.get()) + 1).to_string();
-        html.open(
-            "tr",
-            &[("data-testid", "analog-row"), ("data-register", &register)],
-        );
-        html.open("td", &[("class", "num quiet")]);
-        html.node("code", "", &register).close("td");
-        html.open("th", &[("scope", "row"), ("title", value.row.note)]);
-        html.text(value.row.label).close("th");
-        html.node("td", "num quiet mono", &value.raw.to_string());
-        html.open("td", &[("class", "num analog-value")]);
-        html.text(&value.to_string());
-        if let Some(tenths) = value.scaled.and_then(Scaled::tenths) {
-            bar(html, u32::from(tenths));
-        }
-        html.close("td").close("tr");
-    }
-    html.close("tbody").close("table");
-    if view.analog.is_empty() {
-        html.node("p", "quiet", "None was read yet.");
-    }
-    html.close("section");
-}
-
-/// What is different about this type, as far as it matters for what is shown.
-pub fn differences(html: &mut Markup, device: Device) {
-    let Some(map) = device.map() else { return };
-    html.open(
-        "section",
-        &[("class", "unit-card"), ("data-testid", "differences")],
-    );
-    html.node("h3", "", &format!("About this type: {}", kind(device)));
-    let ids: &[&str] = match device {
-        Device::Ddc100Mx | Device::Ddc100MxB => &["D9", "D18", "D31", "D2"],
-        Device::Ddc100Io => &["D31", "D33", "D3", "D17"],
-        _ => &["D31", "D8", "D16", "D15"],
-    };
-    html.open("ul", &[("class", "differences")]);
-    for reading in map.readings.iter().filter(|r| ids.contains(&r.id)) {
-        html.open("li", &[]);
-        html.node("code", "quiet", reading.id)
-            .text(" ")
-            .text(reading.text);
-        html.close("li");
-    }
-    let watchdog = match device {
-        Device::Ddc100Mx | Device::Ddc100MxB => {
-            "60 s without a poll set its own fault bits; it does not reset (section 4.3)."
-        }
-        _ => {
-            "Each of three times 60 s without a poll resets its UART, then once its processor; a reset takes 10 to 15 s (section 4.3)."
-        }
-    };
-    html.open("li", &[])
-        .node("code", "quiet", "Watchdog")
-        .text(" ")
-        .text(watchdog)
-        .close("li");
-    html.close("ul");
-    html.close("section");
-}
-
 /// Reading all registers, and how that went.
-pub fn reading(html: &mut Markup, unit: u8, asked: Option<&Asked>, online: bool) {
+pub fn reading(html: &mut Markup, unit: u8, net: &Net, online: bool) {
     html.node("h3", "", "Registers");
-    let asked = asked.filter(|a| a.unit == unit);
+    let asked = net.asked.as_ref().filter(|a| a.unit == unit);
     let running = asked.is_some_and(|a| a.end.is_none());
     Button {
         act: "read",
@@ -421,6 +319,22 @@ pub fn reading(html: &mut Markup, unit: u8, asked: Option<&Asked>, online: bool)
         Some(Some((_, text))) => text.clone(),
     });
     html.close("span");
+    html.open(
+        "p",
+        &[("class", "quiet net-small"), ("data-testid", "watched")],
+    );
+    html.text(&format!(
+        "Registers {} to {} are read every few seconds while this page is shown, between two polls.",
+        WATCHED.0, WATCHED.1
+    ));
+    let watched = net.watched.as_ref().filter(|a| a.unit == unit);
+    if let Some((how, text)) = watched.and_then(|a| a.end.as_ref())
+        && *how != Outcome::Ok
+    {
+        let words = if text.is_empty() { outcome(*how) } else { text };
+        html.text(&format!(" The last time it failed: {words}"));
+    }
+    html.close("p");
 }
 
 /// The registers that were read: raw and meaning.
@@ -498,9 +412,7 @@ fn meaning(row: &'static Row, unit: &Unit) -> String {
 mod tests {
     use super::*;
     use crate::network::state::net::tests::{network, poll};
-    use crate::network::state::wish::{choices, from_key};
-    use shared::ddc100::Pair;
-    use shared::ddc100::checklist::checklist as check;
+    use shared::capture::Micros;
     use shared::proto::DdcShape;
 
     fn net() -> Net {
@@ -525,12 +437,17 @@ mod tests {
     fn a_unit_says_what_it_does() {
         let (net, tags) = (net(), Tags::default());
         let unit = &net.units[1];
-        let judged = Judged::of(unit, 2, &tags);
-        let html = drawn(|html| head(html, "Loop", &net, (unit, &judged), &tags, 8_000_000));
+        let judged = Judged::of(unit, &net, &tags);
+        let now = (8_000_000, true);
+        let html = drawn(|html| head(html, "Loop", &net, (unit, &judged), &tags, now));
         assert!(html.contains("61 %") && html.contains("Stopped between the ends · Remote"));
         assert!(html.contains("answers on port 1 only, last good answer 3.0 s ago, after 71.0 ms"));
         assert!(html.contains("place 2 of 3 on <a href=\"#/network/Loop\""));
-        let html = drawn(|html| faults(html, unit, &judged));
+        assert!(html.contains("oldest of registers 3 to 16: 3.0 s"));
+        let cards = Cards::of(&net, unit, 8_000_000, false);
+        let html = drawn(|html| faults(html, &net, &judged, &cards));
+        // Section 4.3.1: unit 2 answers on port 1, not on port 2; bit 11 stays set.
+        assert!(html.contains("Register 9 is 1884 as received, 1884 as a host stores it"));
         assert!(html.contains("data-bit=\"host-b\">1<"));
         assert!(html.contains("not fitted"));
         assert!(html.contains("data-key=\"open_torque_switch_fault\""));
@@ -538,52 +455,117 @@ mod tests {
     }
 
     #[test]
-    fn the_checklist_has_words_and_sources() {
+    fn registers_are_listed() {
         let net = net();
-        let unit = &net.units[1];
-        let faults = Pair {
-            one: unit.fault[0],
-            two: unit.fault[1],
+        let html = drawn(|html| registers(html, &net.units[1], 8_000_000));
+        assert!(html.contains("40009") && html.contains("1884"));
+        assert_eq!(html.matches("<tr data-register").count(), 9);
+    }
+
+    /// A unit that is lost is not drawn as if it still said so.
+    #[test]
+    fn a_lost_unit_says_what_it_was() {
+        let mut net = net();
+        let tags = Tags::default();
+        let head_of = |net: &Net, online| {
+            let judged = Judged::of(&net.units[1], net, &tags);
+            let of = (&net.units[1], &judged);
+            drawn(|html| head(html, "Loop", net, of, &tags, (17_000_000, online)))
         };
-        let wish = from_key("open", 0).unwrap();
-        let list = check(unit.device, &unit.image, faults, Scaling::Percent, wish);
-        let html = drawn(|html| checklist(html, &list, 8_000_000));
-        assert!(html.contains("data-verdict=\"fail\""));
-        assert!(html.contains("data-key=\"torque\" data-verdict=\"fail\""));
-        assert!(html.contains("data-key=\"communication\" data-verdict=\"pass\""));
-        assert!(html.contains("section 6.2, item 2c") && html.contains("read 3.0 s ago"));
-        assert!(html.contains("Nothing is sent from here"));
-        let all = choices(unit.device);
-        let html = drawn(|html| wishes(html, &all, "move", 50));
-        assert!(html.contains("wish-percent") && html.contains("value=\"50\""));
+        let was = "; was: Stopped between the ends · Remote, 12 s ago";
+        let html = head_of(&net, true);
+        assert!(!html.contains("stale") && !html.contains("was:"), "{html}");
+        let html = head_of(&net, false);
+        assert!(html.contains(&format!("no connection{was}")), "{html}");
+        net.units[1].fault = [Some(true), Some(true)];
+        let html = head_of(&net, true);
+        assert!(html.contains(&format!("off-line{was}")), "{html}");
+        assert!(html.contains("class=\"big stale\"") && html.contains("big-state stale"));
+        net.units[1].image = shared::image::Image::new();
+        assert!(
+            head_of(&net, true).contains(">off-line</p>")
+                || head_of(&net, true).contains(" off-line</p>")
+        );
+        let unit = &net.units[1];
+        let judged = Judged::of(unit, &net, &tags);
+        let cards = Cards::of(&net, unit, 17_000_000, is_stale(&net, unit, true));
+        let html = drawn(|html| faults(html, &net, &judged, &cards));
+        assert!(html.contains("<div class=\"stale\">"));
     }
 
     #[test]
-    fn bits_analog_values_and_registers() {
+    fn neighbours_along_the_cable() {
         let net = net();
-        let unit = &net.units[1];
-        let view = Judged::of(unit, 2, &Tags::default()).view;
-        let html = drawn(|html| bits(html, "Timers", "timers", &view.timers));
-        assert!(html.contains("data-key=\"analog_channel_1_low\" data-on=\"1\""));
-        let html = drawn(|html| analog(html, &view, Scaling::Percent));
-        assert!(html.contains("data-register=\"8\"") && html.contains("61 %"));
-        let html = drawn(|html| registers(html, unit, 8_000_000));
-        assert!(html.contains("40009") && html.contains("1884"));
-        assert_eq!(html.matches("<tr data-register").count(), 9);
-        let html = drawn(|html| differences(html, unit.device));
-        assert!(html.contains("D31"));
+        let tags = Tags::default();
+        let html = drawn(|html| neighbours(html, &net, 2, &tags));
+        assert!(
+            html.contains(
+                "href=\"#/device/MOV-001\" data-testid=\"unit-before\">\u{2190} 1 MOV-001<"
+            )
+        );
+        assert!(
+            html.contains(
+                "href=\"#/device/MOV-003\" data-testid=\"unit-after\">\u{2192} 3 MOV-003<"
+            )
+        );
+        let html = drawn(|html| neighbours(html, &net, 1, &tags));
+        assert!(html.contains("host port 1") && html.contains("MOV-002"));
+        let html = drawn(|html| neighbours(html, &net, 3, &tags));
+        assert!(html.contains("host port 2") && html.contains("MOV-002"));
+    }
+
+    /// Registers 14 and 15 were read once; since then polls bring register 9 only.
+    #[test]
+    fn old_faults_are_told_apart() {
+        let mut net = net();
+        let at = Micros::new(40_000_000);
+        net.units[1]
+            .image
+            .absorb(&[3, 0, 8, 0, 1], &[3, 2, 0x08, 0x04], at);
+        let judged = Judged::of(&net.units[1], &net, &Tags::default());
+        let cards = Cards::of(&net, &net.units[1], 41_000_000, false);
+        let html = drawn(|html| faults(html, &net, &judged, &cards));
+        assert!(html.contains("No fault bit is set."), "{html}");
+        assert!(html.contains("data-testid=\"old-fault\" data-key=\"user_fault_2\""));
+        assert!(html.contains("36 s ago") && html.contains("they do not count"));
+        assert!(html.contains("register 9: 1.0 s ago; register 10, 14, 15: 36 s ago"));
     }
 
     #[test]
     fn a_read_tells_how_it_went() {
         let mut net = net();
         net.ask(5, 2);
-        let html = drawn(|html| reading(html, 2, net.asked.as_ref(), true));
+        let html = drawn(|html| reading(html, 2, &net, true));
         assert!(html.contains("disabled") && html.contains("between two polls"));
-        let html = drawn(|html| reading(html, 3, net.asked.as_ref(), true));
-        assert!(!html.contains("disabled") && !html.contains("polls"));
+        let html = drawn(|html| reading(html, 3, &net, true));
+        assert!(!html.contains("disabled") && !html.contains("reading between"));
         net.lost();
-        let html = drawn(|html| reading(html, 2, net.asked.as_ref(), true));
+        let html = drawn(|html| reading(html, 2, &net, true));
         assert!(html.contains("connection to the bridge was lost"));
+    }
+
+    #[test]
+    fn a_watch_that_fails_says_so() {
+        let mut net = net();
+        assert!(net.watch(9, 2));
+        assert!(!net.watch(10, 2), "one at a time");
+        assert!(net.watch(11, 3), "another unit");
+        let read = |html: &mut Markup, net: &Net| reading(html, 3, net, true);
+        let html = drawn(|html| read(html, &net));
+        assert!(html.contains("Registers 3 to 16 are read every few seconds"));
+        assert!(!html.contains("failed"));
+        net.hear(shared::proto::DdcNews::Read {
+            id: 11,
+            bus: "Loop".into(),
+            unit: 3,
+            outcome: Outcome::Silence,
+            text: "no answer within 250 ms".into(),
+            request: "030002000e".into(),
+            response: String::new(),
+            at_us: 9,
+        });
+        let html = drawn(|html| read(html, &net));
+        assert!(html.contains("failed: no answer within 250 ms"), "{html}");
+        assert!(net.watch(12, 3));
     }
 }

@@ -1,5 +1,6 @@
 //! The program's screens.
 
+mod log;
 mod network;
 mod scan;
 mod tags;
@@ -56,6 +57,7 @@ pub fn Network() -> impl IntoView {
     let body = part(move || match screen.get() {
         Screen::Unit => view! { <unit::UnitPage/> }.into_any(),
         Screen::Network => view! { <network::NetworkView/> }.into_any(),
+        Screen::Log => view! { <log::LogPage/> }.into_any(),
         Screen::Tags => view! { <tags::TagsPage/> }.into_any(),
         Screen::Faults => view! { <typed::FaultTablePage/> }.into_any(),
         Screen::Scan => view! { <scan::ScanPage/> }.into_any(),
@@ -76,6 +78,7 @@ pub fn Network() -> impl IntoView {
 enum Screen {
     Unit,
     Network,
+    Log,
     Tags,
     Faults,
     Scan,
@@ -91,6 +94,7 @@ impl Screen {
             (true, false, _) => Self::Faults,
             _ if !has => Self::Nothing,
             (false, ..) => Self::Unit,
+            (_, _, "log") => Self::Log,
             (_, _, "tags") => Self::Tags,
             (_, _, "faults") => Self::Faults,
             (_, _, "scan") => Self::Scan,
@@ -129,6 +133,7 @@ mod tests {
         assert_eq!(Screen::of("", false, "scan", false), Screen::Scan);
         assert_eq!(Screen::of("", true, "scan", false), Screen::Nothing);
         assert_eq!(Screen::of("", true, "", true), Screen::Network);
+        assert_eq!(Screen::of("", true, "log", true), Screen::Log);
         assert_eq!(Screen::of("", true, "tags", true), Screen::Tags);
         assert_eq!(Screen::of("MOV-1", true, "", true), Screen::Unit);
         assert_eq!(Screen::of("MOV-1", false, "", false), Screen::Nothing);

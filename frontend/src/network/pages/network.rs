@@ -18,6 +18,7 @@ use crate::network::state::net::Net;
 use crate::network::state::picture::Picture;
 use crate::network::state::table::{Filter, Order, as_text, rows};
 use crate::network::store::Store;
+use crate::state::sorted::Columns as _;
 
 /// The network that is followed.
 #[component]
@@ -39,9 +40,10 @@ pub(super) fn NetworkView() -> impl IntoView {
         })
     });
     let said: Draw = Arc::new(move |html: &mut Markup| {
+        let name = store.names();
         diagnosis.with(|d| {
             if let Some(d) = d {
-                findings::findings(html, d);
+                findings::findings(html, d, &*name);
             }
         });
     });
@@ -171,7 +173,7 @@ fn UnitTable() -> impl IntoView {
     let tools: Draw = Arc::new(move |html: &mut Markup| {
         let all = store.net.with(|net| net.units.len());
         let many = shown.with(Vec::len);
-        table::tools(html, &query.get(), only.get(), many, all);
+        table::tools(html, (&query.get(), only.get()), order.get(), (many, all));
     });
     let heads: Draw = Arc::new(move |html: &mut Markup| table::head(html, order.get()));
     let on_act = Callback::new(move |act: Act| match act.name.as_str() {
@@ -180,6 +182,17 @@ fn UnitTable() -> impl IntoView {
         "sort" => {
             let chosen = act.element.get_attribute("data-sort").unwrap_or_default();
             store.set_query("sort", &order.get_untracked().after(&chosen));
+        }
+        "order" => {
+            let down = order.get_untracked().down;
+            store.set_query(
+                "sort",
+                &Order::setting(&act.value, down && !act.value.is_empty()),
+            );
+        }
+        "down" => {
+            let column = order.get_untracked().column.key();
+            store.set_query("sort", &Order::setting(column, !act.value.is_empty()));
         }
         name => {
             let copied = name == "copy";

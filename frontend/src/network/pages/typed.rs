@@ -44,7 +44,7 @@ pub(super) fn FaultTablePage() -> impl IntoView {
     let said: Draw = Arc::new(move |html: &mut Markup| {
         diagnosis.with(|d| {
             if let Some(d) = d {
-                findings::findings(html, d);
+                findings::findings(html, d, &|_| String::new());
             }
         });
     });

@@ -1,20 +1,29 @@
 //! A unit of a network.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use leptos::prelude::*;
+use shared::capture::Micros;
 use shared::ddc100::Pair;
-use shared::ddc100::checklist::checklist;
+use shared::ddc100::checklist::{Moment, checklist};
+use shared::ddc100::command::parts;
 use shared::ddc100::scaling::Scaling;
+use shared::frame::Framing;
 use shared::proto::{Block, TableName};
 
 use crate::components::drawn::{Act, Draw, Drawn};
+use crate::erased::effect;
 use crate::markup::Markup;
-use crate::network::markup::{counters, unit};
+use crate::network::markup::cards::{Cards, differences};
+use crate::network::markup::{check, counters, unit};
 use crate::network::state::net::{Net, Unit};
 use crate::network::state::unit::Judged;
 use crate::network::state::wish;
 use crate::network::store::Store;
+
+/// How often registers are read that polls may leave out.
+const WATCH: Duration = Duration::from_secs(5);
 
 /// Draws a part from the network, the unit and what it says.
 type DrawUnit = fn(&mut Markup, Store, &Net, &Unit, &Judged);
@@ -31,16 +40,20 @@ pub(super) fn UnitPage() -> impl IntoView {
     let head = draw(|html, store, net, of, judged| {
         let now = store.now_us.get();
         let bus = store.bus.get();
+        let now = (now, store.online.get());
         store
             .tags
             .with(|tags| unit::head(html, &bus, net, (of, judged), tags, now));
     });
-    let faults = draw(|html, _, _, of, judged| unit::faults(html, of, judged));
+    let faults = draw(|html, store, net, of, judged| {
+        unit::faults(html, net, judged, &cards_of(store, net, of));
+    });
     let check: Draw = Arc::new(move |html: &mut Markup| {
         let (wanted, percent, now) = (wanted.get(), percent.get(), store.now_us.get());
-        with_unit(store, |_, of, _| {
+        let online = store.online.get();
+        with_unit(store, |net, of, _| {
             let choices = wish::choices(of.device);
-            unit::wishes(html, &choices, &wanted, percent);
+            check::wishes(html, &choices, &wanted, percent);
             let known = choices.iter().any(|(key, _)| *key == wanted);
             let Some(wish) = wish::from_key(&wanted, percent).filter(|_| known) else {
                 html.node("p", "quiet", "Choose what the unit should do.");
@@ -50,25 +63,36 @@ pub(super) fn UnitPage() -> impl IntoView {
                 one: of.fault[0],
                 two: of.fault[1],
             };
-            let scaling = store.tags.with(|tags| tags.scaling(of.info.unit));
-            let list = checklist(of.device, &of.image, faults, scaling, wish);
-            unit::checklist(html, &list, now);
+            let scaling = store.tags.with(|tags| tags.scaling(of, 8));
+            let moment = Moment {
+                now: Micros::new(now),
+                most: net.values_last_us(),
+                online,
+            };
+            let list = checklist(of.device, &of.image, faults, scaling, moment, wish);
+            check::checklist(html, &list, now);
+            let framing = Framing::from_key(&net.framing).unwrap_or(Framing::Rtu);
+            check::frame(html, &parts(of.device, framing, of.info.unit, wish));
         });
     });
-    let cards = draw(|html, store, _, of, judged| {
-        let scaling = store.tags.with(|tags| tags.scaling(of.info.unit));
+    let cards = draw(|html, store, net, of, judged| {
         let view = &judged.view;
-        unit::analog(html, view, scaling);
-        unit::bits(html, "Status", "status", &view.status);
-        unit::bits(html, "Digital inputs", "inputs", &view.inputs);
-        unit::bits(html, "Digital outputs", "outputs", &view.outputs);
-        unit::bits(html, "Timers and analog channels", "timers", &view.timers);
-        unit::bits(html, "User faults", "user-faults", &view.user_faults);
-        unit::differences(html, of.device);
+        let cards = cards_of(store, net, of);
+        store.tags.with(|tags| cards.analog(html, view, tags));
+        for (title, testid, numbers, bits) in [
+            ("Status", "status", &[9, 16][..], &view.status),
+            ("Digital inputs", "inputs", &[12, 13], &view.inputs),
+            ("Digital outputs", "outputs", &[11], &view.outputs),
+            ("Timers and analog channels", "timers", &[14], &view.timers),
+            ("User faults", "user-faults", &[15], &view.user_faults),
+        ] {
+            cards.bits(html, (title, testid), numbers, bits);
+        }
+        differences(html, of.device, view);
         counters::counters(html, of, store.online.get(), store.now_us.get());
     });
     let reading = draw(|html, store, net, of, _| {
-        unit::reading(html, of.info.unit, net.asked.as_ref(), store.online.get());
+        unit::reading(html, of.info.unit, net, store.online.get());
     });
     let registers = draw(|html, store, _, of, _| {
         unit::registers(html, of, store.now_us.get());
@@ -105,6 +129,23 @@ pub(super) fn UnitPage() -> impl IntoView {
             }
         }
     });
+    // At once for each unit, and every few seconds while it is shown.
+    let look = move || {
+        if let Some(unit) = address(store) {
+            store.watch(unit);
+        }
+    };
+    effect(move || {
+        if store.tag.with(|tag| !tag.is_empty()) && store.online.get() {
+            look();
+        }
+    });
+    let timer = set_interval_with_handle(look, WATCH);
+    on_cleanup(move || {
+        if let Ok(timer) = timer {
+            timer.clear();
+        }
+    });
     view! {
         <div class="net-page unit-page" data-testid="unit">
             <Drawn class="unit-top" draw=head/>
@@ -117,6 +158,12 @@ pub(super) fn UnitPage() -> impl IntoView {
             <Drawn class="unit-register-list" draw=registers/>
         </div>
     }
+}
+
+/// What the cards of a unit have in common now.
+fn cards_of<'a>(store: Store, net: &Net, of: &'a Unit) -> Cards<'a> {
+    let stale = unit::is_stale(net, of, store.online.get());
+    Cards::of(net, of, store.now_us.get(), stale)
 }
 
 /// Calls `with` with the unit that is shown, if the network has it.

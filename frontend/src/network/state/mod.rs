@@ -4,6 +4,8 @@ pub mod cable;
 pub mod findings;
 pub mod geometry;
 pub mod list;
+pub mod log;
+pub mod names;
 pub mod net;
 pub mod picture;
 pub mod scan;

@@ -1,20 +1,19 @@
 //! A network as the backend tells of it: how it is made up, what the last poll of each unit brought,
 //! how the passes go.
 
+mod member;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use std::collections::BTreeMap;
+pub use member::{Counted, Reach, Unit, reach};
 
 use shared::capture::Micros;
 use shared::ddc100::diagnosis::Diagnosis;
-use shared::ddc100::scaling::Scaling;
-use shared::ddc100::{counters, follow::Follower};
-use shared::device::Device;
-use shared::image::Image;
-use shared::proto::{DdcNews, DdcShape, DdcUnit, LineState, Outcome};
+use shared::ddc100::{FaultTable, counters, follow::Follower};
+use shared::proto::{DdcNews, DdcShape, LineState, Outcome};
 
 use super::findings::findings;
+use super::log::Log;
 use crate::state::absorb::bytes_of;
 
 /// A host port.
@@ -28,152 +27,6 @@ pub struct Port {
     pub text: String,
     /// How long its last whole pass took and should have taken, in microseconds.
     pub pass: Option<(u64, u64)>,
-}
-
-/// Which host ports reach a unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
-    /// Every port that there is.
-    Full,
-    /// Only this one of two.
-    Only(u8),
-    /// None: the unit is off-line.
-    Lost,
-    /// This port reaches it or not; the other one was not tried yet.
-    Half(u8, bool),
-    /// Not tried yet.
-    Unknown,
-}
-
-impl Reach {
-    /// In words, as the state of a unit.
-    #[must_use]
-    pub const fn words(self, ports: usize) -> &'static str {
-        match (self, ports) {
-            (Self::Full, 2..) => "answers on both ports",
-            (Self::Full, _) => "answers",
-            (Self::Only(1), _) => "answers on port 1 only",
-            (Self::Only(_), _) => "answers on port 2 only",
-            (Self::Lost, 2..) => "no answer on either port",
-            (Self::Lost, _) => "no answer",
-            (Self::Half(1, true), _) => "answers on port 1, port 2 not tried yet",
-            (Self::Half(_, true), _) => "answers on port 2, port 1 not tried yet",
-            (Self::Half(1, false), _) => "no answer on port 1, port 2 not tried yet",
-            (Self::Half(_, false), _) => "no answer on port 2, port 1 not tried yet",
-            (Self::Unknown, _) => "not tried yet",
-        }
-    }
-}
-
-/// Which ports reach a unit whose faults on port 1 and 2 are these.
-#[must_use]
-pub const fn reach(fault: [Option<bool>; 2], ports: usize) -> Reach {
-    if ports < 2 {
-        return match fault[0] {
-            None => Reach::Unknown,
-            Some(false) => Reach::Full,
-            Some(true) => Reach::Lost,
-        };
-    }
-    match fault {
-        [None, None] => Reach::Unknown,
-        [Some(false), Some(false)] => Reach::Full,
-        [Some(false), Some(true)] => Reach::Only(1),
-        [Some(true), Some(false)] => Reach::Only(2),
-        [Some(true), Some(true)] => Reach::Lost,
-        [Some(fault), None] => Reach::Half(1, !fault),
-        [None, Some(fault)] => Reach::Half(2, !fault),
-    }
-}
-
-/// A unit.
-#[derive(Clone, Debug)]
-pub struct Unit {
-    /// Address, kind, tag and description, as configured.
-    pub info: DdcUnit,
-    /// Its kind.
-    pub device: Device,
-    /// Its registers as last read.
-    pub image: Image,
-    /// How the last poll ended; `None` before the first.
-    pub outcome: Option<Outcome>,
-    /// The same in words; empty if it was good.
-    pub text: String,
-    /// Host port of the last poll.
-    pub port: u8,
-    /// Fault on host port 1 and 2, as the host found it; `None` where it was not tried.
-    pub fault: [Option<bool>; 2],
-    /// When the last good answer came, in microseconds of the backend.
-    pub at: Option<u64>,
-    /// How long it took, in microseconds.
-    pub took: Option<u64>,
-    /// Counters of function 08 that were asked for, by their sub-function.
-    pub counters: BTreeMap<u16, Counted>,
-}
-
-/// A counter that was asked for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Counted {
-    /// No answer yet.
-    Asked,
-    /// Its value, and when it came, in microseconds of the backend.
-    Value(u16, u64),
-    /// Why it could not be read.
-    Failed(String),
-}
-
-impl Unit {
-    fn new(info: DdcUnit) -> Self {
-        Self {
-            device: Device::from_key(&info.kind).unwrap_or_default(),
-            info,
-            image: Image::new(),
-            outcome: None,
-            text: String::new(),
-            port: 0,
-            fault: [None; 2],
-            at: None,
-            took: None,
-            counters: BTreeMap::new(),
-        }
-    }
-
-    /// Takes the answer to a counter in, or why there is none.
-    fn counted(&mut self, request: &[u8], response: &[u8], text: &str, at_us: u64) {
-        let &[8, high, low, ..] = request else {
-            return;
-        };
-        let sub = u16::from_be_bytes([high, low]);
-        let counted = match counters::answer(request, response) {
-            Some(counter) => Counted::Value(counter.value, at_us),
-            None => Counted::Failed(text.to_owned()),
-        };
-        self.counters.insert(sub, counted);
-    }
-
-    /// Which of so many ports reach it.
-    #[must_use]
-    pub const fn reach(&self, ports: usize) -> Reach {
-        reach(self.fault, ports)
-    }
-
-    /// How its analog values are scaled: as chosen here, else as the tag list of the bridge says,
-    /// else in percent.
-    #[must_use]
-    pub fn scaling(&self, chosen: Option<Scaling>) -> Scaling {
-        let listed = || Scaling::from_key(self.info.scaling.as_deref()?);
-        chosen.or_else(listed).unwrap_or_default()
-    }
-
-    /// Its tag, or its address if it has none.
-    #[must_use]
-    pub fn name(&self) -> String {
-        if self.info.tag.is_empty() {
-            format!("unit {}", self.info.unit)
-        } else {
-            self.info.tag.clone()
-        }
-    }
 }
 
 /// A read that was asked for here.
@@ -218,6 +71,10 @@ pub struct Net {
     pub passes: u64,
     /// The read that was asked for last.
     pub asked: Option<Asked>,
+    /// The last of those that the page of a unit makes by itself.
+    pub watched: Option<Asked>,
+    /// What was found, and when.
+    pub log: Log,
 }
 
 impl Net {
@@ -263,7 +120,10 @@ impl Net {
                     units: units.into_iter().map(Unit::new).collect(),
                     passes: 0,
                     asked: self.asked.take(),
+                    watched: None,
+                    log: core::mem::take(&mut self.log),
                 };
+                self.log.connected();
             }
             DdcNews::Unit {
                 unit,
@@ -278,6 +138,7 @@ impl Net {
                 took_us,
                 bus: _,
             } => {
+                self.log.reach(unit, [fault_a, fault_b]);
                 let Some(unit) = self.unit_mut(unit) else {
                     return;
                 };
@@ -290,6 +151,8 @@ impl Net {
                 if let Some(at) = at_us {
                     unit.image
                         .absorb(&bytes_of(&request), &bytes_of(&response), Micros::new(at));
+                    let number = unit.info.unit;
+                    self.log_bits(number);
                 }
             }
             DdcNews::Pass {
@@ -303,14 +166,17 @@ impl Net {
                 if let Some(port) = self.port_mut(port) {
                     port.pass = Some((took_us, expected_us));
                 }
+                self.log_findings();
             }
             DdcNews::Port {
                 port, state, text, ..
             } => {
+                self.log.port(port, state, &text);
                 if let Some(port) = self.port_mut(port) {
                     port.state = state;
                     port.text = text;
                 }
+                self.log_findings();
             }
             DdcNews::Read {
                 id,
@@ -324,21 +190,81 @@ impl Net {
             } => {
                 let (request, response) = (bytes_of(&request), bytes_of(&response));
                 if let Some(unit) = self.unit_mut(unit) {
+                    let number = unit.info.unit;
                     unit.image.absorb(&request, &response, Micros::new(at_us));
                     unit.counted(&request, &response, &text, at_us);
+                    self.log_bits(number);
                 }
-                if let Some(asked) = self.asked.as_mut().filter(|a| a.id == id) {
-                    asked.end = Some((outcome, text));
+                let both = self.asked.iter_mut().chain(self.watched.as_mut());
+                for asked in both.filter(|a| a.id == id) {
+                    asked.end = Some((outcome, text.clone()));
                 }
             }
             DdcNews::Poll { .. } => {}
         }
     }
 
+    /// Takes the fault bits of a unit into the log.
+    fn log_bits(&mut self, unit: u8) {
+        if let Some(unit) = self.units.iter().find(|u| u.info.unit == unit) {
+            self.log.bits(unit.info.unit, unit.device, &unit.image);
+        }
+    }
+
+    /// Takes what the pattern of faults means into the log, if every poll bears it out.
+    fn log_findings(&mut self) {
+        if let Some(diagnosis) = self.diagnosis().filter(|d| d.unsettled == 0) {
+            self.log.findings(&diagnosis);
+        }
+    }
+
+    /// How long the longest pass takes, as measured or as expected, in microseconds; 0 if that is
+    /// not known.
+    #[must_use]
+    pub fn pass_us(&self) -> u64 {
+        let each = self.ports.iter().filter_map(|port| port.pass);
+        each.map(|(took, expected)| took.max(expected))
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// How old a value may be to rely on, in microseconds: two passes, and at least ten seconds.
+    #[must_use]
+    pub fn values_last_us(&self) -> u64 {
+        self.pass_us().saturating_mul(2).max(10_000_000)
+    }
+
+    /// How much older than the newest answer of a unit a fault bit may be to count, in
+    /// microseconds: three passes, and at least fifteen seconds.
+    #[must_use]
+    pub fn bits_last_us(&self) -> u64 {
+        self.pass_us().saturating_mul(3).max(15_000_000)
+    }
+
+    /// The page of a unit reads what the polls leave out; `false` if such a read is under way.
+    pub fn watch(&mut self, id: u32, unit: u8) -> bool {
+        let waits = |a: &Asked| a.unit == unit && a.end.is_none();
+        if self.watched.as_ref().is_some_and(waits) {
+            return false;
+        }
+        self.watched = Some(Asked {
+            id,
+            unit,
+            end: None,
+        });
+        true
+    }
+
+    /// The faults that the host keeps.
+    #[must_use]
+    pub fn table(&self) -> Option<&FaultTable> {
+        Some(self.faults.as_ref()?.table())
+    }
+
     /// What the pattern of faults means; `None` before the backend told of the network.
     #[must_use]
     pub fn diagnosis(&self) -> Option<Diagnosis> {
-        findings(self.shape?, self.faults.as_ref()?.table())
+        findings(self.shape?, self.table()?)
     }
 
     /// A read of a unit was asked for.
@@ -365,6 +291,10 @@ impl Net {
                 *counted = Counted::Failed("the connection to the bridge was lost".to_owned());
             }
         }
+        if self.shape.is_some() {
+            self.log.lost();
+        }
+        self.watched = None;
         if let Some(asked) = self.asked.as_mut().filter(|a| a.end.is_none()) {
             let words = "The connection to the bridge was lost.";
             asked.end = Some((Outcome::Down, words.to_owned()));

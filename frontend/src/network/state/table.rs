@@ -1,13 +1,12 @@
 //! The table of all units: which are shown, and in which order.
 
-use core::cmp::Ordering;
-
 use shared::ddc100::scaling::Scaled;
 use shared::ddc100::view::Own;
 
 use super::net::{Net, Unit};
 use super::tags::Tags;
 use super::unit::{Health, Judged, kind};
+use crate::state::sorted::{self, Columns, Key, places};
 
 /// A column that the table can be sorted by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,28 +24,28 @@ pub enum Column {
     Position,
     /// The state in words.
     Status,
+    /// The number of faults, the most first.
+    Faults,
     /// The age of the last good answer, the youngest first.
     Age,
     /// How long the last answer took, the quickest first.
     Response,
 }
 
-impl Column {
-    /// All columns.
-    pub const ALL: [Self; 8] = [
+impl Columns for Column {
+    const ALL: &'static [Self] = &[
         Self::Worst,
         Self::Place,
         Self::Unit,
         Self::Tag,
         Self::Position,
         Self::Status,
+        Self::Faults,
         Self::Age,
         Self::Response,
     ];
 
-    /// The word in the address bar.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
+    fn key(self) -> &'static str {
         match self {
             Self::Worst => "worst",
             Self::Place => "place",
@@ -54,11 +53,14 @@ impl Column {
             Self::Tag => "tag",
             Self::Position => "position",
             Self::Status => "status",
+            Self::Faults => "faults",
             Self::Age => "age",
             Self::Response => "response",
         }
     }
+}
 
+impl Column {
     /// The word over the column.
     #[must_use]
     pub const fn label(self) -> &'static str {
@@ -69,6 +71,7 @@ impl Column {
             Self::Tag => "Tag",
             Self::Position => "Position",
             Self::Status => "Status",
+            Self::Faults => "Faults",
             Self::Age => "Age",
             Self::Response => "Response",
         }
@@ -76,79 +79,15 @@ impl Column {
 }
 
 /// By which column the table is sorted, and which way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Order {
-    /// The column.
-    pub column: Column,
-    /// True for the largest first.
-    pub down: bool,
-}
-
-impl Order {
-    /// Reads the setting of the address bar: `tag`, `-tag`; anything else is the worst first.
-    #[must_use]
-    pub fn parse(text: &str) -> Self {
-        let key = text.strip_prefix('-');
-        let found = Column::ALL
-            .into_iter()
-            .find(|c| c.key() == key.unwrap_or(text));
-        Self {
-            column: found.unwrap_or_default(),
-            down: key.is_some() && found.is_some(),
-        }
-    }
-
-    /// The setting after a column was chosen: its order, or the other way round if it has it.
-    #[must_use]
-    pub fn after(self, chosen: &str) -> String {
-        let down = self.column.key() == chosen && !self.down;
-        match (down, chosen == Column::default().key()) {
-            (true, _) => format!("-{chosen}"),
-            (false, true) => String::new(),
-            (false, false) => chosen.to_owned(),
-        }
-    }
-
-    /// How a column is sorted, as ARIA says it.
-    #[must_use]
-    pub fn aria(self, column: Column) -> &'static str {
-        match (self.column == column, self.down) {
-            (false, _) => "none",
-            (true, false) => "ascending",
-            (true, true) => "descending",
-        }
-    }
-}
-
-/// What a unit is sorted by; what is not known has none and comes last, whichever way.
-enum Key {
-    Number(u64),
-    Text(String),
-    None,
-}
-
-impl Key {
-    fn compare(&self, other: &Self, down: bool) -> Ordering {
-        let order = match (self, other) {
-            (Self::None, Self::None) => return Ordering::Equal,
-            (Self::None, _) => return Ordering::Greater,
-            (_, Self::None) => return Ordering::Less,
-            (Self::Number(a), Self::Number(b)) => a.cmp(b),
-            (Self::Text(a), Self::Text(b)) => a.cmp(b),
-            (Self::Number(_), Self::Text(_)) => Ordering::Less,
-            (Self::Text(_), Self::Number(_)) => Ordering::Greater,
-        };
-        if down { order.reverse() } else { order }
-    }
-}
+pub type Order = sorted::Order<Column>;
 
 fn key(unit: &Unit, judged: &Judged, tags: &Tags, column: Column) -> Key {
-    let maybe = |n: Option<u64>| n.map_or(Key::None, Key::Number);
+    let maybe = |n: Option<u64>| n.map_or(Key::None, Key::Count);
     match column {
-        Column::Worst => Key::Number(u64::from(u8::MAX - judged.health as u8)),
+        Column::Worst => Key::Count(u64::from(u8::MAX - judged.health as u8)),
         // Rows come in the order of the cable, and equal ones stay in it.
-        Column::Place => Key::Number(0),
-        Column::Unit => Key::Number(u64::from(unit.info.unit)),
+        Column::Place => Key::Count(0),
+        Column::Unit => Key::Count(u64::from(unit.info.unit)),
         Column::Tag => match tags.tag(unit) {
             "" => Key::None,
             tag => Key::Text(tag.to_ascii_lowercase()),
@@ -160,6 +99,10 @@ fn key(unit: &Unit, judged: &Judged, tags: &Tags, column: Column) -> Key {
         })),
         Column::Status => match judged.known {
             true => Key::Text(judged.view.state.clone()),
+            false => Key::None,
+        },
+        Column::Faults => match judged.known {
+            true => Key::Count(u64::MAX - judged.view.faults.len() as u64),
             false => Key::None,
         },
         Column::Age => maybe(unit.at.map(|at| u64::MAX - at)),
@@ -211,18 +154,17 @@ pub struct Filter<'a> {
 #[must_use]
 pub fn rows(net: &Net, judged: &[Judged], tags: &Tags, filter: Filter<'_>) -> Vec<usize> {
     let order = filter.order;
-    let mut found: Vec<(Key, usize)> = Vec::new();
+    let (mut keys, mut found) = (Vec::new(), Vec::new());
     for (at, (unit, judged)) in net.units.iter().zip(judged).enumerate() {
         let good = judged.health <= Health::Unknown;
         if (filter.only_faults && good) || !wanted(unit, judged, tags, filter.query) {
             continue;
         }
-        let key = key(unit, judged, tags, order.column);
-        // The sorts of the standard library are several kilobytes for each type.
-        let place = found.partition_point(|(other, _)| other.compare(&key, order.down).is_le());
-        found.insert(place, (key, at));
+        keys.push(key(unit, judged, tags, order.column));
+        found.push(at);
     }
-    let mut rows: Vec<usize> = found.into_iter().map(|(_, at)| at).collect();
+    let places = places(&keys, order.down);
+    let mut rows: Vec<usize> = places.into_iter().map(|at| found[at]).collect();
     if order.column == Column::Place && order.down {
         rows.reverse();
     }
@@ -272,7 +214,7 @@ pub fn as_text(
             unit.info.kind.clone(),
             judged.view.state.clone(),
             number(judged.view.position.map(|p| u64::from(p.raw))),
-            tags.scaling(unit.info.unit).key().to_owned(),
+            tags.scaling(unit, 8).key().to_owned(),
             bit(unit.fault[0]).to_owned(),
             bit(unit.fault[1]).to_owned(),
             bit(own[0]).to_owned(),
@@ -293,7 +235,7 @@ pub fn as_text(
 }
 
 /// A cell of a CSV file. One that a spreadsheet would take for a formula is kept from it.
-fn quoted(out: &mut String, cell: &str, comma: char) {
+pub fn quoted(out: &mut String, cell: &str, comma: char) {
     let formula = cell.starts_with(['=', '+', '-', '@']);
     if formula || cell.contains([comma, '"', '\n', '\r']) {
         out.push('"');
@@ -356,6 +298,9 @@ mod tests {
         assert_eq!(sorted("-status"), [1, 0, 2, 3]);
         assert_eq!(sorted("-tag"), [3, 2, 1, 0]);
         assert_eq!(sorted("-place"), [3, 2, 1, 0]);
+        // Unit 2 has a fault bit, unit 1 none; nothing was read of the others.
+        assert_eq!(sorted("faults"), [1, 0, 2, 3]);
+        assert_eq!(sorted("-faults"), [0, 1, 2, 3]);
     }
 
     #[test]

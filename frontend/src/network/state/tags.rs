@@ -3,7 +3,7 @@
 //! It lies over what the backend tells, bus by bus, and is kept as text:
 //!
 //! ```text
-//! unit TAB tag TAB description TAB scaling
+//! unit TAB tag TAB description TAB scaling TAB register=scaling …
 //! ```
 
 use std::collections::BTreeMap;
@@ -21,6 +21,8 @@ pub struct Entry {
     pub description: String,
     /// How its analog registers count; `None` if nobody chose.
     pub scaling: Option<Scaling>,
+    /// How single ones count, by their numbers, if a tag list says it.
+    pub registers: BTreeMap<u16, Scaling>,
 }
 
 /// What is known of the units of a bus.
@@ -40,11 +42,16 @@ impl Tags {
                 continue;
             };
             let mut next = || parts.next().unwrap_or_default().to_owned();
-            let (tag, description, scaling) = (next(), next(), next());
+            let (tag, description, scaling, registers) = (next(), next(), next(), next());
+            let one = |text: &str| {
+                let (register, scaling) = text.split_once('=')?;
+                Some((register.parse().ok()?, Scaling::from_key(scaling)?))
+            };
             let entry = Entry {
                 tag,
                 description,
                 scaling: Scaling::from_key(&scaling),
+                registers: registers.split(' ').filter_map(one).collect(),
             };
             tags.set(unit, entry);
         }
@@ -59,10 +66,15 @@ impl Tags {
         for (unit, entry) in &self.units {
             let scaling = entry.scaling.map_or("", Scaling::key);
             out.push_str(&format!(
-                "{unit}\t{}\t{}\t{scaling}\n",
+                "{unit}\t{}\t{}\t{scaling}",
                 plain(&entry.tag),
                 plain(&entry.description)
             ));
+            for (at, (register, scaling)) in entry.registers.iter().enumerate() {
+                out.push(if at == 0 { '\t' } else { ' ' });
+                out.push_str(&format!("{register}={}", scaling.key()));
+            }
+            out.push('\n');
         }
         out
     }
@@ -82,10 +94,11 @@ impl Tags {
         }
     }
 
-    /// Remembers how the analog registers of a unit count.
+    /// Remembers how the analog registers of a unit count, all of them.
     pub fn set_scaling(&mut self, unit: u8, scaling: Scaling) {
         let mut entry = self.units.get(&unit).cloned().unwrap_or_default();
         entry.scaling = Some(scaling);
+        entry.registers.clear();
         self.set(unit, entry);
     }
 
@@ -110,11 +123,18 @@ impl Tags {
         }
     }
 
-    /// How the analog registers of a unit count.
+    /// How an analog register of a unit counts, if somebody chose or a list says it.
     #[must_use]
-    pub fn scaling(&self, unit: u8) -> Scaling {
-        let entry = self.units.get(&unit);
-        entry.and_then(|e| e.scaling).unwrap_or_default()
+    pub fn chosen(&self, unit: u8, register: u16) -> Option<Scaling> {
+        let entry = self.units.get(&unit)?;
+        let one = entry.registers.get(&register).copied();
+        one.or(entry.scaling)
+    }
+
+    /// How an analog register of a unit counts: as chosen here, else as the bridge was told.
+    #[must_use]
+    pub fn scaling(&self, unit: &Unit, register: u16) -> Scaling {
+        unit.scaling(self.chosen(unit.info.unit, register))
     }
 
     /// All units of which something is known.
@@ -148,13 +168,23 @@ mod tests {
             tag: "80-HS-4141".into(),
             description: "Feed\twater".into(),
             scaling: Some(Scaling::TwelveBits),
+            registers: [(3, Scaling::Byte), (8, Scaling::Raw)].into(),
         };
         tags.set(1, entry);
         tags.set_scaling(250, Scaling::Raw);
         let again = Tags::from_text(&tags.to_text());
         assert_eq!(again.get(1).unwrap().description, "Feed water");
-        assert_eq!(again.scaling(250), Scaling::Raw);
-        assert_eq!(again.scaling(3), Scaling::Percent);
+        assert_eq!(again.chosen(250, 8), Some(Scaling::Raw));
+        assert_eq!(again.chosen(3, 8), None);
+        let of = |register| again.chosen(1, register);
+        assert_eq!(
+            [3, 8, 6].map(of),
+            [Scaling::Byte, Scaling::Raw, Scaling::TwelveBits].map(Some)
+        );
+        // As it was kept before single registers were.
+        let before = Tags::from_text("7\tXV-7\t\t0-255\n");
+        assert_eq!(before.chosen(7, 8), Some(Scaling::Byte));
+        assert_eq!(before.to_text(), "7\tXV-7\t\t0-255\n");
         assert_eq!(Tags::from_text("x\n300\ta\n\n"), Tags::default());
     }
 
@@ -173,7 +203,7 @@ mod tests {
             },
         );
         assert_eq!(tags.tag(&net.units[0]), "XV-1");
-        assert_eq!(tags.scaling(1), Scaling::Percent);
+        assert_eq!(tags.scaling(&net.units[0], 8), Scaling::Percent);
         tags.set(1, Entry::default());
         assert!(tags.is_empty());
     }

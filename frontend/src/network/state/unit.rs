@@ -1,5 +1,6 @@
 //! How a unit is: what it says of itself, weighed together with what the host found.
 
+use shared::capture::Micros;
 use shared::ddc100::view::{Bit, Mode, Own, View};
 use shared::device::Device;
 use shared::map::row::Row;
@@ -51,7 +52,7 @@ const GRAVE: [&str; 5] = [
 ];
 
 /// Bits of the fault registers that report what happens rather than a fault.
-const REPORTS: [&str; 3] = ["processor_reset", "opening_in_local", "closing_in_local"];
+pub const REPORTS: [&str; 3] = ["processor_reset", "opening_in_local", "closing_in_local"];
 
 /// A unit with what it says, and how it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,13 +78,17 @@ fn is_local(device: Device, view: &View) -> bool {
 }
 
 impl Judged {
-    /// Judges a unit of a host with so many ports.
+    /// Judges a unit of a network. Fault bits that were read a few passes before its newest answer
+    /// do not count: the unit may have cleared them since.
     #[must_use]
-    pub fn of(unit: &Unit, ports: usize, tags: &Tags) -> Self {
-        let scaling = tags.scaling(unit.info.unit);
-        let view = View::of(unit.device, &unit.image, |_: &Row| scaling);
+    pub fn of(unit: &Unit, net: &Net, tags: &Tags) -> Self {
+        let scaling = |row: &Row| tags.scaling(unit, row.address.get().saturating_add(1));
+        let mut view = View::of(unit.device, &unit.image, scaling);
+        if let Some(newest) = unit.newest() {
+            view.set_aside(Micros::new(newest.saturating_sub(net.bits_last_us())));
+        }
         let known = view.own.one != Own::Unknown;
-        let reach = unit.reach(ports);
+        let reach = unit.reach(net.ports.len());
         let has = |is: fn(&Bit) -> bool| view.faults.iter().any(is);
         let health = match reach {
             Reach::Lost => Health::Lost,
@@ -107,9 +112,7 @@ impl Judged {
     #[must_use]
     pub fn all(net: &Net, tags: &Tags) -> Vec<Self> {
         let units = net.units.iter();
-        units
-            .map(|unit| Self::of(unit, net.ports.len(), tags))
-            .collect()
+        units.map(|unit| Self::of(unit, net, tags)).collect()
     }
 
     /// Who operates the valve, if it is not the network; empty otherwise.
@@ -163,7 +166,7 @@ mod tests {
             poll(&mut net, 1, fault, words);
         }
         net.units[0].fault = fault;
-        Judged::of(&net.units[0], 2, &Tags::default())
+        Judged::of(&net.units[0], &net, &Tags::default())
     }
 
     /// Section 3.2.3 of the guide: position 61 %, status 0801: opened, channel B fault.
@@ -206,6 +209,32 @@ mod tests {
             (unit.view.state.as_str(), unit.local()),
             ("Opening", "Local or stop")
         );
+    }
+
+    /// Registers 14 and 15 read once, then cleared at the unit; polls bring 8 to 13 only.
+    #[test]
+    fn bits_that_were_read_long_ago_are_no_faults() {
+        let mut net = network(1, DdcShape::Loop, 2);
+        poll(&mut net, 1, GOOD, &[50, 0x0804, 0, 0, 1, 0, 1, 4, 0]);
+        let judged = |net: &Net| Judged::of(&net.units[0], net, &Tags::default());
+        assert_eq!(judged(&net).health, Health::Warning);
+        assert_eq!(judged(&net).view.faults.len(), 2);
+        // All was read at 5 s. 15 s later it still counts, after that no longer.
+        let later = |net: &mut Net, seconds: u64| {
+            let at = Micros::new(seconds * 1_000_000);
+            net.units[0]
+                .image
+                .absorb(&[3, 0, 8, 0, 1], &[3, 2, 0x08, 0x04], at);
+        };
+        later(&mut net, 20);
+        assert_eq!(judged(&net).health, Health::Warning);
+        later(&mut net, 21);
+        assert_eq!(judged(&net).health, Health::Good);
+        let view = judged(&net).view;
+        assert_eq!((view.faults.len(), view.old_faults.len()), (0, 2));
+        // With slow passes it counts for three of them.
+        net.ports[0].pass = Some((10_000_000, 9_000_000));
+        assert_eq!(judged(&net).health, Health::Warning);
     }
 
     #[test]

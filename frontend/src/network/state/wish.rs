@@ -12,6 +12,8 @@ pub fn from_key(key: &str, percent: u8) -> Option<Wish> {
         "close" => Wish::Close,
         "stop" => Wish::Stop,
         "move" => Wish::MoveTo(percent),
+        "start-esd" => Wish::StartEsd,
+        "stop-esd" => Wish::StopEsd,
         _ => match (relay("engage-"), relay("disengage-")) {
             (Some(number), _) => Wish::Engage(number),
             (_, Some(number)) => Wish::Disengage(number),
@@ -31,6 +33,7 @@ pub fn choices(kind: Device) -> Vec<(String, String)> {
         keys.push(format!("engage-{number}"));
         keys.push(format!("disengage-{number}"));
     }
+    keys.extend(["start-esd", "stop-esd"].map(str::to_owned));
     let known = |key: String| {
         let wish = from_key(&key, 50)?;
         let mut name = wish.name(kind)?;
@@ -53,7 +56,9 @@ mod tests {
         let mx = keys(Device::Ddc100Mx);
         assert!(mx.contains(&"open".into()) && mx.contains(&"move".into()));
         assert!(mx.contains(&"engage-7".into()));
+        assert!(mx.contains(&"start-esd".into()) && mx.contains(&"stop-esd".into()));
         let io = keys(Device::Ddc100Io);
+        assert!(!io.contains(&"start-esd".into()), "{io:?}");
         assert!(!io.contains(&"open".into()), "{io:?}");
         assert!(io.contains(&"engage-3".into()));
         // Reading D2: relay 3 is AS-3 on an MX/DDC.

@@ -1,11 +1,11 @@
 //! The items of the checklist.
 
-use super::{Item, Verdict, Wish};
+use super::{Item, Moment, Verdict, Wish};
 use crate::capture::Micros;
+use crate::ddc100::Pair;
 use crate::ddc100::scaling::Scaling;
 use crate::ddc100::view::Mode;
-use crate::ddc100::words::{FAULTS, INPUTS_1, OUTPUTS, POSITION, STATUS, bit, register};
-use crate::ddc100::{Pair, tables};
+use crate::ddc100::words::{FAULTS, INPUTS_1, POSITION, STATUS, bit, register};
 use crate::device::Device;
 use crate::image::Image;
 
@@ -15,6 +15,7 @@ pub(super) struct Look<'a> {
     pub(super) image: &'a Image,
     pub(super) scaling: Scaling,
     pub(super) wish: Wish,
+    pub(super) moment: Moment,
 }
 
 pub(super) fn item(
@@ -33,32 +34,58 @@ pub(super) fn item(
 }
 
 /// Item 2, first point, and item 3: the unit answers the polls.
-pub(super) fn communication(faults: Pair<Option<bool>>) -> Item {
-    let (verdict, text) = match (faults.one, faults.two) {
-        (Some(false), Some(false)) => (Verdict::Pass, "The unit answers through both host ports."),
-        (Some(false), _) => (Verdict::Pass, "The unit answers through host port 1."),
-        (_, Some(false)) => (Verdict::Pass, "The unit answers through host port 2."),
-        (None, None) => (Verdict::Unknown, "The unit was not polled yet."),
-        _ => (
+pub(super) fn communication(
+    faults: Pair<Option<bool>>,
+    newest: Option<Micros>,
+    moment: Moment,
+) -> Item {
+    let late = newest.and_then(|at| moment.too_old(at));
+    let found = |verdict, text: &str| (verdict, text.to_owned());
+    let (verdict, text) = match (faults.one, faults.two, late) {
+        _ if !moment.online => found(
+            Verdict::Unknown,
+            "No connection: whether the unit answers now is not known.",
+        ),
+        (None, None, _) => found(Verdict::Unknown, "The unit was not polled yet."),
+        (Some(true), Some(true) | None, _) | (None, Some(true), _) => found(
             Verdict::Fail,
             "The unit does not answer the polls: a command would not reach it.",
         ),
+        (.., Some(age)) => (
+            Verdict::Unknown,
+            format!(
+                "The last answer came {} ago: too long to rely on.",
+                seconds(age)
+            ),
+        ),
+        (Some(false), Some(false), _) => {
+            found(Verdict::Pass, "The unit answers through both host ports.")
+        }
+        (Some(false), ..) => found(Verdict::Pass, "The unit answers through host port 1."),
+        (_, Some(false), _) => found(Verdict::Pass, "The unit answers through host port 2."),
     };
-    item("communication", verdict, "section 6.2, items 2 and 3", text)
+    Item {
+        at: newest,
+        ..item("communication", verdict, "section 6.2, items 2 and 3", text)
+    }
+}
+
+/// An age in whole seconds.
+fn seconds(micros: u64) -> String {
+    format!("{} s", micros.checked_div(1_000_000).unwrap_or(0))
 }
 
 /// Item 5 and reading D21.
 pub(super) fn range(percent: u8) -> Item {
     let (verdict, text) = match percent {
         2..=98 => (Verdict::Pass, format!("{percent} % is within 2 to 98 %.")),
-        0 => (Verdict::Fail, "For 0 % give Close instead.".to_owned()),
-        100 => (Verdict::Fail, "For 100 % give Open instead.".to_owned()),
-        1 | 99 => (
-            Verdict::Fail,
-            format!(
-                "{percent} % is outside 2 to 98 %: go to the end with Open or Close, or stay within."
-            ),
-        ),
+        0..=100 => {
+            let end = if percent < 50 { "Close" } else { "Open" };
+            let text = format!(
+                "{percent} % can be sent, but is outside 2 to 98 %: better give {end} to go to the end (reading D21)."
+            );
+            (Verdict::Warn, text)
+        }
         _ => (
             Verdict::Fail,
             format!("{percent} % does not exist: a position is 0 to 100 %."),
@@ -74,15 +101,32 @@ impl Look<'_> {
         cells?.iter().map(|c| c.at).min()
     }
 
-    fn item(
+    pub(super) fn item(
         &self,
         key: &'static str,
         numbers: &[u16],
         source: &'static str,
         (verdict, text): (Verdict, String),
     ) -> Item {
+        let at = self.at(numbers);
+        let old = at.and_then(|at| self.moment.too_old(at));
+        let (verdict, text) = match old {
+            _ if verdict == Verdict::Unknown => (verdict, text),
+            _ if !self.moment.online => (
+                Verdict::Unknown,
+                format!("No connection; when it was read last: {text}"),
+            ),
+            Some(age) => (
+                Verdict::Unknown,
+                format!(
+                    "Read {} ago, too long to rely on; it was: {text}",
+                    seconds(age)
+                ),
+            ),
+            None => (verdict, text),
+        };
         Item {
-            at: self.at(numbers),
+            at,
             ..item(key, verdict, source, text)
         }
     }
@@ -177,7 +221,7 @@ impl Look<'_> {
         };
         match self.tenths() {
             None => self.no_position(),
-            Some(tenths) if tenths == u16::from(percent).saturating_mul(10) => (
+            Some(_) if self.is_there(percent) => (
                 Verdict::Fail,
                 format!("The valve is at {percent} % already."),
             ),
@@ -186,6 +230,41 @@ impl Look<'_> {
                 format!("The valve is at {}.{} %.", tenths / 10, tenths % 10),
             ),
         }
+    }
+
+    /// True if the position is a count next to so many percent: 50 % of 255 is 127 or 128.
+    fn is_there(&self, percent: u8) -> bool {
+        let counts = self
+            .scaling
+            .full()
+            .zip(register(self.image, POSITION).map(|cell| cell.word));
+        counts.is_some_and(|(full, raw)| {
+            let wanted = u32::from(full).saturating_mul(u32::from(percent));
+            u32::from(raw).saturating_mul(100).abs_diff(wanted) <= 50
+        })
+    }
+
+    /// The one-step move-to counts in percent (section 3.2.6, rules).
+    pub(super) fn scale(&self) -> Item {
+        let (verdict, text) = match self.scaling {
+            Scaling::Percent => (
+                Verdict::Pass,
+                "The unit is taken to be scaled 0-100, as chosen here; no register tells.".to_owned(),
+            ),
+            Scaling::Raw => (
+                Verdict::Unknown,
+                "The move-to in one step wants a unit that is scaled 0-100; its scale is not known."
+                    .to_owned(),
+            ),
+            other => (
+                Verdict::Fail,
+                format!(
+                    "The move-to in one step wants a unit that is scaled 0-100; this one is scaled {}.",
+                    other.key()
+                ),
+            ),
+        };
+        item("scale", verdict, "section 3.2.6", text)
     }
 
     /// The position in tenths of a percent, if it was read and has one.
@@ -217,6 +296,7 @@ impl Look<'_> {
             Wish::Close => Some(false),
             Wish::MoveTo(to) => self
                 .tenths()
+                .filter(|_| !self.is_there(to))
                 .map(|from| from < u16::from(to).saturating_mul(10)),
             _ => None,
         };
@@ -239,7 +319,7 @@ impl Look<'_> {
             (Some(false), Some(false), None) => free("either"),
             _ => (
                 Verdict::Unknown,
-                "A torque switch tripped, and without the position it is not known whether it is the one of this direction.".to_owned(),
+                "A torque switch tripped, and it is not known whether it is the one of this direction.".to_owned(),
             ),
         };
         self.item("torque", &[STATUS], "section 6.2, item 2c", found)
@@ -269,6 +349,30 @@ impl Look<'_> {
         self.item("emergency_shutdown", &[FAULTS], source, found)
     }
 
+    /// Starting what is started already, or ending what is not (section 6.1, item 5).
+    pub(super) fn esd(&self) -> Item {
+        let found = match (bit(self.image, FAULTS, 10), self.wish) {
+            (None, _) => unread(FAULTS),
+            (Some(true), Wish::StartEsd) => (
+                Verdict::Fail,
+                "The emergency shutdown of the network is active already.".to_owned(),
+            ),
+            (Some(true), _) => (
+                Verdict::Pass,
+                "The emergency shutdown of the network is active.".to_owned(),
+            ),
+            (Some(false), Wish::StartEsd) => (
+                Verdict::Pass,
+                "No emergency shutdown of the network is reported.".to_owned(),
+            ),
+            (Some(false), _) => (
+                Verdict::Unknown,
+                "No emergency shutdown of the network is reported: there is none, or the unit is set to ignore it.".to_owned(),
+            ),
+        };
+        self.item("network_esd", &[FAULTS], "section 6.1, item 5", found)
+    }
+
     /// Implied by the list: bit 13 of register 10 on an MX/DDC. On the others it is another fault.
     pub(super) fn local_stop(&self) -> Item {
         let found = match bit(self.image, FAULTS, 13) {
@@ -282,60 +386,8 @@ impl Look<'_> {
         let source = "table 3.5, register 10, and section 6.2, item 2";
         self.item("local_stop", &[FAULTS], source, found)
     }
-
-    /// The bit of register 11 of the relay that is meant (readings D2 and D3).
-    fn relay_bit(&self, relay: u8) -> Option<u32> {
-        let relay = u32::from(relay);
-        if tables::is_fast(self.kind) {
-            Some(relay.saturating_add(1))
-        } else if self.kind == Device::Ddc100Io && relay <= 2 {
-            Some(relay.saturating_add(5))
-        } else {
-            relay.checked_sub(1)
-        }
-    }
-
-    /// Repeating what was done already is no good (item 6).
-    pub(super) fn relay(&self) -> Item {
-        let (relay, on) = match self.wish {
-            Wish::Engage(n) => (n, true),
-            Wish::Disengage(n) => (n, false),
-            _ => (0, false),
-        };
-        let now = self
-            .relay_bit(relay)
-            .and_then(|at| bit(self.image, OUTPUTS, at));
-        let found = match (now, on) {
-            (None, _) => unread(OUTPUTS),
-            (Some(true), true) => (Verdict::Fail, "The relay is engaged already.".to_owned()),
-            (Some(false), false) => (Verdict::Fail, "The relay is disengaged already.".to_owned()),
-            (Some(true), false) => (Verdict::Pass, "The relay is engaged.".to_owned()),
-            (Some(false), true) => (Verdict::Pass, "The relay is disengaged.".to_owned()),
-        };
-        self.item("relay", &[OUTPUTS], "section 6.2, item 6", found)
-    }
-
-    /// Item 3: of two relays that work one device, the first is disengaged first.
-    pub(super) fn interlock(&self) -> Item {
-        const RELAYS: u16 = 0b1111_1100;
-        let own = match self.wish {
-            Wish::Engage(n) => self.relay_bit(n).map_or(0, |at| 1_u16.wrapping_shl(at)),
-            _ => 0,
-        };
-        let found = match register(self.image, OUTPUTS) {
-            None => unread(OUTPUTS),
-            Some(cell) if cell.word & RELAYS & !own == 0 => {
-                (Verdict::Pass, "No other relay is engaged.".to_owned())
-            }
-            Some(_) => (
-                Verdict::Unknown,
-                "Another relay is engaged: if both work one device, disengage that one first. Which belong together, no register tells.".to_owned(),
-            ),
-        };
-        self.item("interlock", &[OUTPUTS], "section 6.2, item 3", found)
-    }
 }
 
-fn unread(number: u16) -> (Verdict, String) {
+pub(super) fn unread(number: u16) -> (Verdict, String) {
     (Verdict::Unknown, format!("Register {number} was not read."))
 }

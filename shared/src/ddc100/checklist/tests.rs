@@ -35,8 +35,24 @@ fn without(number: u16) -> Image {
     image(&words)
 }
 
+/// Half a second after everything was read, with a connection.
+const NOW: Moment = Moment {
+    now: Micros::new(500_000),
+    most: 10_000_000,
+    online: true,
+};
+
 fn list(kind: Device, image: &Image, wish: Wish) -> Checklist {
-    checklist(kind, image, REACHED, Scaling::Percent, wish)
+    checklist(kind, image, REACHED, Scaling::Percent, NOW, wish)
+}
+
+/// The notes in one text.
+fn notes_of(kind: Device, wish: Wish) -> String {
+    let list = list(kind, &image(&READY), wish);
+    let notes = list.notes.iter();
+    notes
+        .map(|(text, source)| format!("{text} ({source})\n"))
+        .collect()
 }
 
 /// The items in short: key and verdict.
@@ -56,7 +72,7 @@ fn says(list: &Checklist, key: &str, verdict: Verdict, words: &str) {
     assert!(item.source.contains("section") || item.source.contains("table"));
 }
 
-use Verdict::{Fail, Pass, Unknown};
+use Verdict::{Fail, Pass, Unknown, Warn};
 
 #[test]
 fn a_valve_that_may_be_opened() {
@@ -83,7 +99,14 @@ fn a_valve_that_may_be_opened() {
 fn communication_first() {
     let with = |one, two| {
         let faults = Pair { one, two };
-        checklist(UEC, &image(&READY), faults, Scaling::Percent, Wish::Stop)
+        checklist(
+            UEC,
+            &image(&READY),
+            faults,
+            Scaling::Percent,
+            NOW,
+            Wish::Stop,
+        )
     };
     says(
         &with(Some(false), Some(false)),
@@ -249,6 +272,7 @@ fn not_there_already() {
         &image(&READY),
         REACHED,
         Scaling::Byte,
+        NOW,
         Wish::MoveTo(61),
     );
     says(&bytes, "position", Pass, "23.9 %");
@@ -390,20 +414,21 @@ fn d21_d22_range_of_a_move_to() {
     for (percent, verdict, words) in [
         (2, Pass, "within 2 to 98"),
         (98, Pass, "within 2 to 98"),
-        (0, Fail, "give Close"),
-        (100, Fail, "give Open"),
-        (1, Fail, "outside 2 to 98"),
-        (99, Fail, "outside 2 to 98"),
+        (0, Warn, "better give Close"),
+        (100, Warn, "better give Open"),
+        (1, Warn, "outside 2 to 98"),
+        (99, Warn, "outside 2 to 98"),
         (101, Fail, "does not exist"),
         (255, Fail, "does not exist"),
     ] {
         let move_to = list(MX, &image(&READY), Wish::MoveTo(percent));
         says(&move_to, "range", verdict, words);
+        assert_eq!(move_to.verdict(), verdict);
         assert!(
             move_to
                 .notes
                 .iter()
-                .any(|(text, _)| text.contains("06 or 16"))
+                .any(|(text, _)| text.contains("06, or 16"))
         );
     }
 }
@@ -555,10 +580,279 @@ fn any_words_are_judged() {
                 Wish::Stop,
                 Wish::MoveTo(7),
                 Wish::Engage(3),
+                Wish::StartEsd,
+                Wish::StopEsd,
             ] {
                 let list = list(kind, &image, wish);
                 assert!(list.items.iter().all(|i| !i.text.is_empty()));
             }
         }
     }
+}
+
+/// "Already there" is the count next to the position: 50 % of 255 is 127.5, of 4095 is 2047.5.
+#[test]
+fn there_already_on_each_scale() {
+    for (scaling, word, percent, there) in [
+        (Scaling::Byte, 126, 50, false),
+        (Scaling::Byte, 127, 50, true),
+        (Scaling::Byte, 128, 50, true),
+        (Scaling::Byte, 129, 50, false),
+        (Scaling::TwelveBits, 2047, 50, true),
+        (Scaling::TwelveBits, 2048, 50, true),
+        (Scaling::TwelveBits, 2049, 50, false),
+        (Scaling::Percent, 50, 50, true),
+        (Scaling::Percent, 49, 50, false),
+        // 2 % of 255 is 5.1.
+        (Scaling::Byte, 5, 2, true),
+        (Scaling::Byte, 6, 2, false),
+    ] {
+        let image = but(8, word);
+        let list = checklist(UEC, &image, REACHED, scaling, NOW, Wish::MoveTo(percent));
+        let (verdict, words) = if there {
+            (Fail, "already")
+        } else {
+            (Pass, "The valve is at")
+        };
+        says(&list, "position", verdict, words);
+    }
+    // No scale, no percent.
+    let raw = checklist(
+        UEC,
+        &but(8, 50),
+        REACHED,
+        Scaling::Raw,
+        NOW,
+        Wish::MoveTo(50),
+    );
+    says(&raw, "position", Unknown, "no position");
+}
+
+/// Section 3.2.6: the move-to in one step wants a unit that is scaled 0-100, and new firmware.
+#[test]
+fn rules_of_the_one_step_move() {
+    let move_to = |scaling| {
+        let wish = Wish::MoveTo(30);
+        checklist(UEC, &image(&READY), REACHED, scaling, NOW, wish)
+    };
+    says(&move_to(Scaling::Percent), "scale", Pass, "scaled 0-100");
+    assert_eq!(move_to(Scaling::Percent).verdict(), Pass);
+    says(&move_to(Scaling::Byte), "scale", Fail, "scaled 0-255");
+    says(
+        &move_to(Scaling::TwelveBits),
+        "scale",
+        Fail,
+        "scaled 0-4095",
+    );
+    says(&move_to(Scaling::Raw), "scale", Unknown, "not known");
+    assert_eq!(move_to(Scaling::Byte).verdict(), Fail);
+    // Open and Close do not count in percent.
+    assert_eq!(
+        checklist(UEC, &image(&READY), REACHED, Scaling::Byte, NOW, Wish::Open).verdict(),
+        Pass
+    );
+    for (kind, words) in [
+        (UEC, "from Modbus firmware 2.00 on"),
+        (MX, "from firmware 02/01.00 on"),
+        (Device::Ddc100Clamshell, "UEC-3-DDC and MX-DDC only"),
+    ] {
+        let notes = notes_of(kind, Wish::MoveTo(30));
+        assert!(
+            notes.contains(words) && notes.contains("(section 3.2.6)"),
+            "{notes}"
+        );
+        assert!(notes.contains("register 2, then 6656"));
+    }
+}
+
+/// Items 1, 4, 6, 7, 8, 9 and 10 of section 6.2 say how to command, not whether: they are notes.
+#[test]
+fn notes_have_the_words_of_the_guide() {
+    let open = notes_of(UEC, Wish::Open);
+    let close = notes_of(MX, Wish::Close);
+    let (stop, move_to) = (notes_of(UEC, Wish::Stop), notes_of(UEC, Wish::MoveTo(50)));
+    let engage = notes_of(MX, Wish::Engage(6));
+    let all = [&open, &close, &stop, &move_to, &engage];
+    for notes in all {
+        // Item 1.
+        assert!(notes.contains("between two polls, after an answer"));
+        assert!(
+            notes.contains(
+                "Polling goes on after the acknowledge. (sections 4.3.2 and 6.2, item 1)"
+            )
+        );
+        // Item 6.
+        assert!(notes.contains("sent once, and again only if no acknowledge came"));
+        assert!(notes.contains("repeating it can stop the valve. (section 6.2, item 6)"));
+    }
+    for notes in [&open, &close] {
+        assert!(notes.contains("By function 05 or 06. (section 6.2, item 4)"));
+        assert!(notes.contains(
+            "stops by itself at the end of travel: no Stop is needed there. (section 6.2, item 7)"
+        ));
+        assert!(notes.contains("No Stop is needed before turning round"));
+        assert!(
+            notes.contains("the unit stops first, then runs the other way. (section 6.2, item 9)")
+        );
+    }
+    assert!(engage.contains("By function 05 or 06. (section 6.2, item 4)"));
+    assert!(notes_of(MX, Wish::Disengage(7)).contains("05 or 06 for relays 1 to 6 only"));
+    assert!(move_to.contains("By function 06, or 16 (reading D22)"));
+    assert!(move_to.contains("position control, which no register tells. (section 6.2, item 4)"));
+    assert!(stop.contains(
+        "bit 2 of register 9 (stopped) is 1 once the valve stands. (section 6.2, item 8)"
+    ));
+    assert!(stop.contains("works in REMOTE and in LOCAL. (section 6.2, item 10)"));
+    assert!(
+        engage.contains(
+            "the first is disengaged before the second is engaged. (section 6.2, item 3)"
+        )
+    );
+}
+
+/// Table 3.7: 1280 and 1536; section 6.1, item 5 on bit 10 of register 10.
+#[test]
+fn emergency_shutdown_of_the_network() {
+    assert_eq!(Wish::StartEsd.command(), Some(1280));
+    assert_eq!(Wish::StopEsd.command(), Some(1536));
+    assert_eq!(
+        Wish::StartEsd.name(UEC).as_deref(),
+        Some("Start network ESD")
+    );
+    assert_eq!(Wish::StopEsd.name(MX).as_deref(), Some("Stop network ESD"));
+    assert_eq!(Wish::StartEsd.name(IO), None);
+    let idle = image(&READY);
+    let active = but(10, 0x0400);
+    let start = list(UEC, &idle, Wish::StartEsd);
+    says(&start, "network_esd", Pass, "No emergency shutdown");
+    says(&start, "torque", Pass, "either direction");
+    assert_eq!(start.verdict(), Pass);
+    says(
+        &list(UEC, &active, Wish::StartEsd),
+        "network_esd",
+        Fail,
+        "active already",
+    );
+    says(
+        &list(UEC, &active, Wish::StopEsd),
+        "network_esd",
+        Pass,
+        "is active",
+    );
+    says(
+        &list(UEC, &idle, Wish::StopEsd),
+        "network_esd",
+        Unknown,
+        "set to ignore it",
+    );
+    says(
+        &list(UEC, &without(10), Wish::StopEsd),
+        "network_esd",
+        Unknown,
+        "Register 10",
+    );
+    says(
+        &list(UEC, &but(12, 0x0800), Wish::StartEsd),
+        "remote",
+        Fail,
+        "STOP",
+    );
+    says(
+        &list(UEC, &but(9, 0x1004), Wish::StartEsd),
+        "torque",
+        Unknown,
+        "not known whether",
+    );
+    says(
+        &list(MX, &but(10, 0x2000), Wish::StartEsd),
+        "local_stop",
+        Fail,
+        "Stopped",
+    );
+    says(
+        &list(IO, &idle, Wish::StartEsd),
+        "command",
+        Fail,
+        "works no valve",
+    );
+    assert!(notes_of(UEC, Wish::StartEsd).contains("a setting of it, which may be to ignore it"));
+}
+
+/// What was read too long ago is not known now, whatever it was.
+#[test]
+fn old_values_are_not_relied_on() {
+    let at = |seconds: u64, image: &Image, wish| {
+        let moment = Moment {
+            now: Micros::new(seconds * 1_000_000),
+            ..NOW
+        };
+        checklist(UEC, image, REACHED, Scaling::Percent, moment, wish)
+    };
+    // Read at about 0.1 ms; ten seconds are allowed.
+    assert_eq!(at(10, &image(&READY), Wish::Open).verdict(), Pass);
+    let old = at(11, &image(&READY), Wish::Open);
+    assert_eq!(old.verdict(), Unknown);
+    assert!(
+        old.items.iter().all(|i| i.verdict == Unknown),
+        "{:?}",
+        short(&old)
+    );
+    says(
+        &old,
+        "remote",
+        Unknown,
+        "Read 10 s ago, too long to rely on; it was: The selector stands at REMOTE.",
+    );
+    says(&old, "communication", Unknown, "last answer came 10 s ago");
+    says(
+        &at(60, &but(9, 1), Wish::Open),
+        "position",
+        Unknown,
+        "it was: The valve is open already.",
+    );
+    // One old register among new ones.
+    let mut mixed = image(&READY);
+    let fresh = Micros::new(60_000_000);
+    mixed.absorb(&[3, 0, 8, 0, 1], &[3, 2, 0, 4], fresh);
+    let mixed = at(61, &mixed, Wish::Open);
+    says(&mixed, "communication", Pass, "both host ports");
+    says(&mixed, "combined_fault", Pass, "No combined fault");
+    says(&mixed, "remote", Unknown, "Read 60 s ago");
+    says(&mixed, "emergency_shutdown", Unknown, "Read 60 s ago");
+    // What rests on no register stays.
+    says(
+        &at(60, &image(&READY), Wish::MoveTo(101)),
+        "range",
+        Fail,
+        "does not exist",
+    );
+}
+
+#[test]
+fn without_a_connection_nothing_is_known() {
+    let off = Moment {
+        online: false,
+        ..NOW
+    };
+    let list = |image: &Image, wish| checklist(UEC, image, REACHED, Scaling::Percent, off, wish);
+    let open = list(&image(&READY), Wish::Open);
+    assert!(
+        open.items.iter().all(|i| i.verdict == Unknown),
+        "{:?}",
+        short(&open)
+    );
+    says(&open, "communication", Unknown, "No connection");
+    says(
+        &open,
+        "combined_fault",
+        Unknown,
+        "No connection; when it was read last: No combined fault.",
+    );
+    says(
+        &list(&without(9), Wish::Open),
+        "combined_fault",
+        Unknown,
+        "Register 9 was not read",
+    );
+    assert_eq!(list(&image(&READY), Wish::Stop).verdict(), Unknown);
 }

@@ -202,3 +202,38 @@ fn analog_values() {
     assert_eq!(view(IO, &words).analog.len(), 5);
     assert_eq!(view(MX, &words).at, Some(Micros::new(30)));
 }
+
+/// Registers 14 and 15 were read once and the unit cleared them since; polls bring 8 to 13 only.
+#[test]
+fn read_once_and_cleared_at_the_unit_later() {
+    let mut image = image(&[(9, 0x0804), (14, 0x0001), (15, 0x0004)]);
+    let later = Micros::new(60_000_000);
+    image.absorb(&[3, 0, 8, 0, 2], &[3, 4, 0x10, 0x04, 0, 0], later);
+    let mut seen = View::of(UEC, &image, |_| Scaling::Percent);
+    assert_eq!(
+        labels(&seen.faults),
+        [
+            "Open torque switch fault",
+            "Analog channel 1 low",
+            "User fault 2"
+        ]
+    );
+    seen.set_aside(Micros::new(45_000_000));
+    assert_eq!(labels(&seen.faults), ["Open torque switch fault"]);
+    assert_eq!(
+        labels(&seen.old_faults),
+        ["Analog channel 1 low", "User fault 2"]
+    );
+    assert_eq!(seen.old_faults[0].at, Micros::new(140));
+}
+
+/// Table 3.5: register 15 of an MX/DDC is not used (D10); the software version is in register 11 of
+/// the others (D14).
+#[test]
+fn what_a_type_has_at_all() {
+    for kind in [MX, UEC, IO] {
+        assert!(has_bits(kind, 9) && has_bits(kind, 11) && has_bits(kind, 12));
+    }
+    assert!(has_bits(UEC, 15) && !has_bits(MX, 15));
+    assert!(has_software(UEC) && has_software(IO) && !has_software(MX));
+}
