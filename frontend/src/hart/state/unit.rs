@@ -7,6 +7,8 @@ use shared::capture::{Capture, Direction};
 use shared::device::{Device, Family};
 use shared::frame::Framing;
 use shared::hart::class;
+use shared::hart::frame::Address;
+use shared::hart::link::{Answer, Identity};
 use shared::hart::model::Class;
 use shared::proto::{HartCommand, Outcome};
 use shared::session::Session;
@@ -18,6 +20,13 @@ use crate::state::work::Shown;
 
 /// Points of the trend that are kept: half an hour at two a second.
 const TREND: usize = 3600;
+
+/// Microseconds after which an answer does not tell of now any more.
+const FRESH: u64 = 10_000_000;
+/// Bit of the device status: the configuration was changed.
+const CONFIGURED: u8 = 0x40;
+/// Key of the counter of changes of the configuration.
+const COUNTER: &str = "change_counter";
 
 /// A command with its data, as asked: what tells one reading from another.
 pub type Key = (u16, String);
@@ -101,8 +110,14 @@ pub struct Unit {
     pub answered_us: Option<u64>,
     /// How the last exchange ended, and in words.
     pub last: Option<(Outcome, String)>,
+    /// True while the connection is gone, until something is heard again.
+    pub away: bool,
     /// The last device status byte with its time.
     pub status: Option<(u8, u64)>,
+    /// When its mode may have changed: the device status did, or the primary variable came or went.
+    pub moded_us: u64,
+    /// When its configuration changed last, by the device status or the counter of command 0.
+    pub configured_us: u64,
     /// What was asked once and is not over.
     pending: Vec<Key>,
 }
@@ -119,7 +134,10 @@ impl Unit {
             trend: VecDeque::new(),
             answered_us: None,
             last: None,
+            away: false,
             status: None,
+            moded_us: 0,
+            configured_us: 0,
             pending: Vec::new(),
         }
     }
@@ -139,6 +157,7 @@ impl Unit {
         (at_us, took_us, tries): (u64, u64, u8),
     ) {
         self.last = Some((outcome, text.to_owned()));
+        self.away = false;
         let device = self.family.map_or(Device::None, Device::Rotork);
         let session = exchange(request, response);
         let asked = Shown::of(&session, 0, device);
@@ -153,10 +172,17 @@ impl Unit {
         if let Some(answer) = &answer {
             self.answered_us = Some(at_us);
             if let Some(status) = raw_of(answer, "device_status") {
-                self.status = Some((u8::try_from(status).unwrap_or(0), at_us));
+                let status = u8::try_from(status).unwrap_or(0);
+                let moved = self.status.map_or(0, |(before, _)| before ^ status);
+                self.note(moved != 0, moved & CONFIGURED != 0, at_us);
+                self.status = Some((status, at_us));
             }
         }
         let refused = answer.as_ref().and_then(refusal);
+        if let (0, Some(counter)) = (command, answer.as_ref().and_then(counter)) {
+            let before = self.raw(0, COUNTER).is_some_and(|before| before != counter);
+            self.note(false, before, at_us);
+        }
         let reading = self.readings.entry(key).or_default();
         match (answer, refused) {
             (Some(shown), None) if outcome == Outcome::Ok => {
@@ -167,14 +193,18 @@ impl Unit {
                     took_us,
                     tries,
                 };
-                if command == 3 {
-                    self.trend.push_back(moment(&good));
+                let moment = (command == 3).then(|| moment(&good));
+                reading.good = Some(good);
+                reading.bad = None;
+                if let Some(moment) = moment {
+                    let has = |m: &Moment| m.values[1].is_some();
+                    let came = self.trend.back().is_some_and(|b| has(b) != has(&moment));
+                    self.note(came, false, at_us);
+                    self.trend.push_back(moment);
                     if self.trend.len() > TREND {
                         self.trend.pop_front();
                     }
                 }
-                reading.good = Some(good);
-                reading.bad = None;
             }
             (_, refused) => {
                 reading.bad = Some(Bad {
@@ -184,6 +214,21 @@ impl Unit {
                 });
             }
         }
+    }
+
+    fn note(&mut self, mode: bool, configuration: bool, at_us: u64) {
+        if mode {
+            self.moded_us = at_us;
+        }
+        if configuration {
+            self.configured_us = at_us;
+        }
+    }
+
+    /// Where its commands go, by its answer to command 0, of whatever revision.
+    #[must_use]
+    pub fn address(&self) -> Option<Address> {
+        Some(identity(&self.good(0)?.shown)?.address)
     }
 
     /// What is known of a command.
@@ -229,6 +274,16 @@ impl Unit {
     /// The connection is gone: what was told stays, and grows old.
     pub fn lost(&mut self) {
         self.last = None;
+        self.away = true;
+    }
+
+    /// True for an answer that tells of now: the last of its command, and not older than ten
+    /// seconds.
+    #[must_use]
+    pub fn is_fresh(&self, command: u16, now_us: u64) -> bool {
+        let reading = self.reading(&plain(command)).filter(|r| r.bad.is_none());
+        let good = reading.and_then(|r| r.good.as_ref()).filter(|_| !self.away);
+        good.is_some_and(|good| now_us.saturating_sub(good.at_us) <= FRESH)
     }
 }
 
@@ -277,6 +332,17 @@ fn refusal(shown: &Shown) -> Option<String> {
     let code = u8::try_from(raw_of(shown, "response_code")?).ok()?;
     let (_, field) = find(shown, "response_code")?;
     (class(code).0 == Class::Error).then(|| format!("Refused: {}.", decoded.bare_text(field)))
+}
+
+/// Who answered: from the answer to command 0, 11 or 21, from the delimiter to the check byte.
+#[must_use]
+pub fn identity(shown: &Shown) -> Option<Identity> {
+    Identity::of(&Answer::of(shown.decoded.bytes())?)
+}
+
+/// The counter of changes in an answer to command 0; HART 5 has none.
+fn counter(shown: &Shown) -> Option<u32> {
+    raw_of(shown, COUNTER)
 }
 
 /// A field of the protocol or of the data, by its key.
@@ -359,6 +425,88 @@ pub(crate) mod tests {
         assert_eq!(moment.values[2], Some((49.5, "49.5".into())));
         assert_eq!(unit.reading(&plain(13)), None, "not read is not there");
         assert!(unit.has(133) && !unit.has(129) && !unit.has(33));
+    }
+
+    /// A frame of the device with its check byte.
+    pub(crate) fn answer(command: u8, status: u8, data: &[u8]) -> Vec<u8> {
+        let data = [&[0, status], data].concat();
+        shared::hart::frame::seal(0x86, &[0xAE, 0xDD, 1, 0x23, 0x45], command, &data)
+    }
+
+    /// A request to it.
+    pub(crate) fn request(command: u8, data: &[u8]) -> Vec<u8> {
+        shared::hart::frame::seal(0x82, &[0xAE, 0xDD, 1, 0x23, 0x45], command, data)
+    }
+
+    /// Takes an answer in that came at a second.
+    pub(crate) fn hear(unit: &mut Unit, command: u8, status: u8, data: &[u8], second: u64) {
+        let (asked, answer) = (request(command, &[]), answer(command, status, data));
+        let ok = (Outcome::Ok, "");
+        let at = (second * 1_000_000, 2, 1);
+        unit.take(&asked, &answer, command.into(), ok, at);
+    }
+
+    /// Loop current 12 mA, and this primary variable in percent; no others.
+    pub(crate) fn poll(pv: f32) -> Vec<u8> {
+        let [a, b, c, d] = pv.to_be_bytes();
+        vec![0x41, 0x40, 0, 0, 57, a, b, c, d]
+    }
+
+    /// Command 0 by its lengths: HART 5 answers 12 bytes, HART 6 17 and HART 7 22; the counter is
+    /// bytes 14 and 15.
+    pub(crate) fn identity_of(revision: u8, counter: u8) -> Vec<u8> {
+        let mut data = vec![254, 0x6E, 0xDD, 7, revision, 2, 1, 8, 0, 1, 0x23, 0x45];
+        match revision {
+            6 => data.extend([5, 5, 0, counter, 0]),
+            7 => data.extend([5, 4, 0, counter, 0, 0, 0x6E, 0, 0x6E, 1]),
+            _ => {}
+        }
+        data
+    }
+
+    #[test]
+    fn devices_of_every_revision_have_their_long_address() {
+        for revision in 5..=7 {
+            let mut unit = unit(&[]);
+            assert_eq!(unit.address(), None);
+            hear(&mut unit, 0, 0, &identity_of(revision, 1), 1);
+            assert_eq!(unit.address(), Some(Address::Long(0x2EDD, 0x01_2345)));
+        }
+    }
+
+    #[test]
+    fn answers_grow_old() {
+        let mut unit = unit(&[]);
+        assert!(!unit.is_fresh(48, 0));
+        hear(&mut unit, 48, 0, &[0; 9], 1);
+        assert!(unit.is_fresh(48, 11_000_000) && !unit.is_fresh(48, 11_000_001));
+        unit.lost();
+        assert!(!unit.is_fresh(48, 1_000_000));
+        hear(&mut unit, 3, 0, &poll(1.0), 2);
+        assert!(unit.is_fresh(48, 2_000_000));
+        let silence = (Outcome::Silence, "no answer");
+        unit.take(&request(48, &[]), &[], 48, silence, (3_000_000, 1, 4));
+        assert!(!unit.is_fresh(48, 3_000_000));
+    }
+
+    #[test]
+    fn what_moves_is_noted() {
+        let mut unit = unit(&[]);
+        hear(&mut unit, 3, 0, &poll(50.0), 1);
+        hear(&mut unit, 3, 0, &poll(51.0), 2);
+        assert_eq!((unit.moded_us, unit.configured_us), (0, 0));
+        hear(&mut unit, 3, 0, &poll(f32::NAN), 3);
+        assert_eq!(unit.moded_us, 3_000_000, "no demand any more");
+        hear(&mut unit, 3, 8, &poll(f32::NAN), 4);
+        assert_eq!(unit.moded_us, 4_000_000, "loop current fixed");
+        assert_eq!(unit.configured_us, 0);
+        hear(&mut unit, 3, 0x48, &poll(f32::NAN), 5);
+        assert_eq!(unit.configured_us, 5_000_000, "configuration changed");
+        hear(&mut unit, 0, 0x48, &identity_of(7, 1), 6);
+        hear(&mut unit, 0, 0x48, &identity_of(7, 1), 7);
+        assert_eq!(unit.configured_us, 5_000_000);
+        hear(&mut unit, 0, 0x48, &identity_of(7, 2), 8);
+        assert_eq!(unit.configured_us, 8_000_000, "the counter went on");
     }
 
     #[test]
