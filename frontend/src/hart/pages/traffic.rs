@@ -14,7 +14,7 @@ use crate::components::traffic_panes::{TrafficPanes, draw_row, end, pause, save_
 use crate::components::windowed::DrawRow;
 use crate::erased::memo;
 use crate::format::{clock, count};
-use crate::hart::state::site::is_about;
+use crate::hart::state::site::{body, is_about};
 use crate::hart::state::unit::Unit;
 use crate::hart::store::Store;
 use crate::markup::Markup;
@@ -69,7 +69,7 @@ pub(super) fn TrafficPage(
                         .is_some_and(|f| f.is_noise() || f.marks.is_damaged());
                     let mine = || {
                         let bytes = session.bytes(*at).unwrap_or(&[]);
-                        is_about(bytes, polling, own)
+                        is_about(body(session.framing(), bytes), polling, own)
                     };
                     (!problems || bad) && (!only || bad || mine())
                 })

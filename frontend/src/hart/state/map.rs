@@ -1,8 +1,6 @@
 //! The condensed status map: where it comes from, and as a file.
 
 use shared::device::Family;
-use shared::frame::Framing;
-use shared::hart::frame::preamble;
 use shared::hart::link::Answer;
 use shared::hart::model::{Bit, Mapped, Preset};
 use shared::hart::ne107::{ALARM_BYTES, ENTRIES, Map, Report, report};
@@ -10,6 +8,7 @@ use shared::hart::{CONDENSED_STATUS, DEVICE_STATUS, PRESETS, additional};
 use shared::session::Session;
 
 use super::plan;
+use super::site::body;
 use super::unit::{Good, Key, Unit, find, raw_of};
 
 /// The first line of a file.
@@ -114,12 +113,7 @@ pub fn refused(unit: &Unit) -> Option<&str> {
 pub fn status_in(session: &Session) -> Option<Vec<u8>> {
     (session.first()..session.len()).rev().find_map(|index| {
         let bytes = session.bytes(index)?;
-        // Behind the header of HART-IP a frame has no preamble.
-        let skip = match session.framing() {
-            Framing::HartIp => 8,
-            _ => preamble(bytes),
-        };
-        let answer = Answer::of(bytes.get(skip..)?)?;
+        let answer = Answer::of(body(session.framing(), bytes))?;
         let is = answer.number() == 48 && answer.code() == Some(0);
         answer.data().get(..6).filter(|_| is).map(<[u8]>::to_vec)
     })
@@ -251,6 +245,7 @@ pub fn from_csv(text: &str) -> Result<Map, String> {
 mod tests {
     use super::*;
     use crate::hart::state::unit::tests::{answer, hex, request, unit};
+    use shared::frame::Framing;
     use shared::hart::frame::seal;
     use shared::proto::Outcome;
 

@@ -246,11 +246,20 @@ impl Link {
     }
 }
 
-/// True for a frame about a device: by its polling address, if it has one, or by the address that
-/// its answers to command 0 have shown.
+/// A frame from its delimiter on: behind the preamble, or behind the header of HART-IP.
 #[must_use]
-pub fn is_about(frame: &[u8], polling: Option<u8>, own: Option<Address>) -> bool {
-    let body = frame.get(preamble(frame)..).unwrap_or(&[]);
+pub fn body(framing: Framing, frame: &[u8]) -> &[u8] {
+    let skip = match framing {
+        Framing::HartIp => shared::hart::ip::HEADER,
+        _ => preamble(frame),
+    };
+    frame.get(skip..).unwrap_or(&[])
+}
+
+/// True for a frame, from its delimiter on, about a device: by its polling address, if it has one,
+/// or by the address that its answers to command 0 have shown.
+#[must_use]
+pub fn is_about(body: &[u8], polling: Option<u8>, own: Option<Address>) -> bool {
     let address = Head::of(body).map(|head| head.address);
     let short = polling.map(Address::Short);
     address.is_some_and(|address| [short, own].contains(&Some(address)))
@@ -364,9 +373,14 @@ mod tests {
         assert!(is_about(&poll, Some(0), own));
         assert!(!is_about(&poll, Some(0), None));
         let short = [0xFF, 0xFF, 0x02, 0x80, 0, 0, 0x82];
-        assert!(is_about(&short, Some(0), None));
+        let short = body(Framing::Hart, &short);
+        assert!(is_about(short, Some(0), None));
         // A device that is found by its tag has no polling address that we know.
-        assert!(!is_about(&short, None, own));
+        assert!(!is_about(short, None, own));
+        // Eight bytes of HART-IP: version, type, id, status, sequence, length of all.
+        let header = [1, 0, 3, 0, 0, 2, 0, 17];
+        let wrapped = [&header, &poll[..]].concat();
+        assert!(is_about(body(Framing::HartIp, &wrapped), Some(0), own));
         assert!(!is_about(&[], Some(0), None) && !is_about(&[], None, None));
     }
 }
