@@ -108,7 +108,7 @@ pub fn row(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u6
 /// Where a device is on its bus.
 fn unit(device: &DeviceState) -> String {
     match device.info.unit {
-        NO_POLLING if device.is_hart() => "by tag".to_owned(),
+        NO_POLLING if device.is_hart() => "by tag or address".to_owned(),
         unit if device.is_hart() => format!("poll {unit}"),
         unit => format!("unit {unit}"),
     }

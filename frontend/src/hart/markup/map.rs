@@ -168,7 +168,7 @@ pub fn result(html: &mut Markup, status: &str, report: Option<Report>) {
         "p",
         &[("class", "hart-ne107"), ("data-testid", "hart-result")],
     );
-    html.text(&format!("With {status}, this map gives: "));
+    html.text(&format!("With {status}, the map gives: "));
     let Some(report) = report else {
         html.text("unknown, as entries of bits that are set were not read.");
         html.close("p");

@@ -98,6 +98,11 @@ pub fn figures(html: &mut Markup, unit: &Unit, open: &[String], now_us: u64) {
     html.close("p");
     answered(html, unit, now_us);
     let third = condition::third(unit.family);
+    // HART 5 and 6 have a type of one byte.
+    let kind = match unit.raw(0, "device_type") {
+        Some(_) => "device_type",
+        None => "expanded_type",
+    };
     html.open("div", &[("class", "hart-group")]);
     for (command, field, label) in [
         (3, "pv", "Demand"),
@@ -106,7 +111,7 @@ pub fn figures(html: &mut Markup, unit: &Unit, open: &[String], now_us: u64) {
         (3, "loop_current", "Loop current"),
         (133, "mode", "Control mode"),
         (20, "long_tag", "Long tag"),
-        (0, "expanded_type", "Device type"),
+        (0, kind, "Device type"),
         (0, "device_id", "Device id"),
     ] {
         value(html, unit, &plain(command), field, label, (open, now_us));
@@ -189,7 +194,7 @@ pub fn ne107(html: &mut Markup, unit: &Unit, set: &[&'static Bit]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hart::state::unit::tests::{POLL, STATUS, hear, poll, unit};
+    use crate::hart::state::unit::tests::{POLL, STATUS, hear, identity_of, poll, unit};
     use crate::markup::valve;
 
     #[test]
@@ -241,6 +246,21 @@ mod tests {
         // PV out of limits is no bit of a map; a moving valve is no alarm.
         assert!(said(&[0; 9], 1).contains("no map gives one"));
         assert!(said(&[0, 0, 0, 0, 1, 0, 0, 0, 0], 0).contains("Good:"));
+    }
+
+    #[test]
+    fn older_revisions_have_a_type() {
+        for (revision, key) in [
+            (5, "0.device_type"),
+            (6, "0.device_type"),
+            (7, "0.expanded_type"),
+        ] {
+            let mut unit = unit(&[]);
+            hear(&mut unit, 0, 0, &identity_of(revision, 1), 1);
+            let mut html = Markup::new();
+            figures(&mut html, &unit, &[], 1);
+            assert!(html.finish().contains(key), "{revision}");
+        }
     }
 
     #[test]

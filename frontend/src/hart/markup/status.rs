@@ -200,7 +200,7 @@ fn one(html: &mut Markup, bit: &Bit, on: bool, source: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hart::state::unit::tests::{STATUS, unit};
+    use crate::hart::state::unit::tests::{STATUS, answer, request, unit};
 
     /// The worked answer R10: byte 0 local control fault, byte 2 bit 1, byte 4 A4, byte 5 40.
     #[test]
@@ -225,6 +225,28 @@ mod tests {
         assert!(
             !html.contains("title="),
             "nothing is told to the mouse only"
+        );
+    }
+
+    /// Local control fault alone: a failure by table 20, as the device's map has it.
+    #[test]
+    fn the_result_of_the_map_is_told_where_it_was_read() {
+        let mut known = unit(&[(48, STATUS.0, STATUS.1)]);
+        let draw = |unit: &Unit| {
+            let mut html = Markup::new();
+            status(&mut html, unit, 7);
+            html.finish()
+        };
+        assert!(!draw(&known).contains("hart-result"));
+        let data = [&[2, 11, 0, 64, 0, 0, 0, 0, 0x30][..], &[0; 27]].concat();
+        let (asked, answer) = (request(31, &[2, 11, 0, 64]), answer(31, 0x90, &data));
+        let ok = (shared::proto::Outcome::Ok, "");
+        known.take(&asked, &answer, 523, ok, (8, 2, 1));
+        let html = draw(&known);
+        let result = html.split("hart-result").nth(1).unwrap();
+        assert!(
+            result.split("</p>").next().unwrap().contains("Failure"),
+            "{result}"
         );
     }
 }

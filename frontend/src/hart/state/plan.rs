@@ -74,6 +74,11 @@ pub fn watched(tab: &str, family: Option<Family>) -> (Vec<Key>, u32) {
     }
 }
 
+/// True for a tab that shows what the status map makes of the status.
+fn has_map(tab: &str) -> bool {
+    tab == "map" || tab == "status"
+}
+
 /// What a tab needs to know once.
 #[must_use]
 pub fn once(tab: &str) -> Vec<Key> {
@@ -86,7 +91,7 @@ pub fn once(tab: &str) -> Vec<Key> {
         _ => &[],
     };
     let mut keys: Vec<_> = numbers.iter().copied().map(plain).collect();
-    if tab == "map" {
+    if has_map(tab) {
         keys.push(map());
     }
     keys.extend(modes());
@@ -99,7 +104,7 @@ pub fn once(tab: &str) -> Vec<Key> {
 pub fn due(tab: &str, unit: &Unit, now_us: u64) -> Vec<Key> {
     let more = unit.status.is_some_and(|(status, _)| status & 0x10 != 0);
     let mut keys = once(tab);
-    if tab == "map" {
+    if has_map(tab) {
         keys.extend(super::map::rest(unit));
     }
     keys.retain(|key| {
