@@ -57,7 +57,10 @@ pub(super) fn MapView(
     let captured = move || {
         let input = input?;
         input.epoch.track();
-        input.work.with(|work| status_in(&work.as_ref()?.session))
+        let selected = input.cursor.get().and_then(|at| u32::try_from(at).ok());
+        input
+            .work
+            .with(|work| status_in(&work.as_ref()?.session, selected))
     };
     let of = move |key: &str| -> Option<Named> {
         match key {
@@ -168,7 +171,7 @@ pub(super) fn MapView(
             Some(unit) => unit.with(alarm_bytes).map(|s| (s, "the status as read")),
             None => given.with(|text| match (typed(text), text.trim().is_empty()) {
                 (Some(status), _) => Some((status, "the status bytes as given")),
-                (None, true) => captured().map(|s| (s, "the last command 48 of the input")),
+                (None, true) => captured().map(|s| (s, "command 48 of the input")),
                 (None, false) => {
                     html.node(
                         "p",

@@ -108,12 +108,15 @@ pub fn refused(unit: &Unit) -> Option<&str> {
     Some(&bad.text)
 }
 
-/// Bytes of the own status of a device with a command 48: the last ones in a capture.
+/// The own status of a device in a capture: that of the frame that is selected, if it is an answer
+/// to command 48, else of the last one.
 #[must_use]
-pub fn status_in(session: &Session) -> Option<Vec<u8>> {
-    (session.first()..session.len()).rev().find_map(|index| {
-        let bytes = session.bytes(index)?;
-        let answer = Answer::of(body(session.framing(), bytes))?;
+pub fn status_in(session: &Session, selected: Option<u32>) -> Option<Vec<u8>> {
+    let mut frames = selected
+        .into_iter()
+        .chain((session.first()..session.len()).rev());
+    frames.find_map(|index| {
+        let answer = Answer::of(body(session.framing(), session.bytes(index)?))?;
         let is = answer.number() == 48 && answer.code() == Some(0);
         answer.data().get(..6).filter(|_| is).map(<[u8]>::to_vec)
     })
@@ -328,15 +331,18 @@ mod tests {
     #[test]
     fn status_bytes_come_from_a_capture_or_a_person() {
         use crate::hart::state::unit::tests::STATUS;
-        let text = format!("{} {}", STATUS.0, STATUS.1);
+        let later = answer(48, 0, &[1, 0, 0, 0, 0, 0, 0, 0, 0]);
         let mut session = Session::new(Framing::Hart);
-        for frame in text.split(' ') {
-            session.push(&shared::capture::Capture::of(&hex(frame)));
+        for frame in [hex(STATUS.0), hex(STATUS.1), later] {
+            session.push(&shared::capture::Capture::of(&frame));
         }
         session.finish();
         let status = [2, 0, 2, 0, 0xA4, 0x40];
-        assert_eq!(status_in(&session).as_deref(), Some(&status[..]));
-        assert_eq!(status_in(&Session::new(Framing::Hart)), None);
+        let last = [1, 0, 0, 0, 0, 0];
+        assert_eq!(status_in(&session, None).as_deref(), Some(&last[..]));
+        assert_eq!(status_in(&session, Some(0)).as_deref(), Some(&last[..]));
+        assert_eq!(status_in(&session, Some(1)).as_deref(), Some(&status[..]));
+        assert_eq!(status_in(&Session::new(Framing::Hart), None), None);
         assert_eq!(typed("02 00 02 00").as_deref(), Some(&status[..4]));
         for bad in ["", "02 00 02", "02 00 02 0", "02 00 02 0x"] {
             assert_eq!(typed(bad), None, "{bad}");
