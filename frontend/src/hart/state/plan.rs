@@ -90,11 +90,11 @@ pub fn once(tab: &str) -> Vec<Key> {
         "status" | "traffic" => &[0],
         _ => &[],
     };
-    let mut keys: Vec<_> = numbers.iter().copied().map(plain).collect();
+    let mut keys = Vec::from(modes());
+    keys.extend(numbers.iter().copied().map(plain));
     if has_map(tab) {
         keys.push(map());
     }
-    keys.extend(modes());
     keys
 }
 
@@ -112,7 +112,7 @@ pub fn due(tab: &str, unit: &Unit, now_us: u64) -> Vec<Key> {
             return unit.reading(key).is_none();
         };
         let slow = match key.0 {
-            48 if more => MORE,
+            48 if more && tab == "overview" => MORE,
             7 | 9 | 48 | 133 => SLOW,
             // The counter of changes.
             0 if tab == "setup" => SLOW,
