@@ -9,6 +9,9 @@ const SLOW: u64 = 30;
 /// Seconds between two reads of command 48 while the device says that there is more to read.
 const MORE: u64 = 5;
 
+/// Seconds between two reads at least, whatever the device gives reason for: a bit may flutter.
+const HASTE: u64 = 2;
+
 /// Tabs of a device: word in the address, and what people read.
 pub const TABS: [(&str, &str); 6] = [
     ("overview", "Overview"),
@@ -122,7 +125,8 @@ pub fn due(tab: &str, unit: &Unit, now_us: u64) -> Vec<Key> {
             48 | 133 => unit.moded_us.max(unit.configured_us),
             _ => unit.configured_us,
         };
-        last < changed || now_us.saturating_sub(last) / 1_000_000 >= slow
+        let age = now_us.saturating_sub(last) / 1_000_000;
+        (last < changed && age >= HASTE) || age >= slow
     });
     keys
 }
@@ -212,6 +216,10 @@ mod tests {
         hear(&mut unit, 3, 0x08, &poll(50.0), 12);
         assert!(has(&unit, "overview", 133, 12) && has(&unit, "overview", 48, 12));
         assert!(!has(&unit, "overview", 0, 12), "the identity stays");
+        // A bit that flutters does not take the line.
+        hear(&mut unit, 133, 0, &[0], 12);
+        hear(&mut unit, 3, 0x08, &poll(50.0), 13);
+        assert!(!has(&unit, "overview", 133, 13) && has(&unit, "overview", 133, 14));
     }
 
     #[test]
@@ -220,7 +228,7 @@ mod tests {
         hear(&mut unit, 131, 0, &[0x40, 0x80, 0, 0, 0x41, 0xA0, 0, 0], 11);
         assert!(!has(&unit, "setup", 131, 12));
         hear(&mut unit, 3, 0x40, &poll(50.0), 12);
-        assert!(has(&unit, "setup", 131, 12), "configuration changed");
+        assert!(has(&unit, "setup", 131, 13), "configuration changed");
         hear(
             &mut unit,
             131,
