@@ -8,7 +8,8 @@ use crate::config::{Config, DeviceConfig, LineConfig};
 use crate::sim::{self, Actuators};
 use shared::device::Device as Kind;
 use shared::frame::Framing;
-use shared::proto::{self, ToPage, VERSION};
+use shared::hart::link::Target;
+use shared::proto::{self, NO_POLLING, ToPage, VERSION};
 use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::watch;
 
@@ -59,7 +60,10 @@ impl Plant {
                     tag: device.tag.clone(),
                     kind: device.device.key().into(),
                     bus: bus.name.clone(),
-                    unit: device.unit,
+                    unit: match &device.target {
+                        None | Some(Target::Polling(_)) => device.unit,
+                        Some(_) => NO_POLLING,
+                    },
                     description: device.description.clone(),
                 },
                 bus: first,

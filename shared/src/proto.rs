@@ -34,6 +34,9 @@ pub const MAX_MESSAGE: usize = 64 * 1024;
 /// Fastest period of a watch, in milliseconds.
 pub const MIN_PERIOD_MS: u32 = 100;
 
+/// The unit of a HART device that is found by its tag or long address.
+pub const NO_POLLING: u8 = u8::MAX;
+
 /// News for a program that the page hosts.
 pub trait News {
     /// The text that travels: JSON that begins with one of [`PROGRAM_PREFIXES`].
@@ -200,7 +203,8 @@ pub struct DeviceInfo {
     pub kind: String,
     /// Name of its bus.
     pub bus: String,
-    /// Unit address.
+    /// Unit address; of a HART device its polling address, [`NO_POLLING`] if it is found by its tag or
+    /// long address.
     pub unit: u8,
     /// What it does in the plant, as configured; may be empty.
     pub description: String,

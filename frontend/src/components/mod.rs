@@ -13,5 +13,6 @@ pub mod problems;
 pub mod program;
 pub mod rail;
 pub mod traffic;
+pub mod traffic_panes;
 pub mod values;
 pub mod windowed;

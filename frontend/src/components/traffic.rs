@@ -4,27 +4,22 @@ use std::sync::Arc;
 
 use leptos::prelude::*;
 use shared::capture::Micros;
-use shared::decode::Context;
 use shared::device::Device;
-use shared::frame::Role;
 use shared::proto::LineState;
 use shared::session::Session;
 use shared::tree::Decoded;
 
-use crate::browser::{Narrow, offset_minutes, save};
-use crate::components::drawn::{Act, Draw, Drawn};
-use crate::components::frame_detail::{FrameDetail, Selected};
-use crate::components::windowed::{DrawRow, Windowed};
+use crate::browser::offset_minutes;
+use crate::components::drawn::{Act, Draw};
+use crate::components::traffic_panes::{TrafficPanes, draw_row, end, latency, pause, save_frames};
+use crate::components::windowed::DrawRow;
 use crate::erased::{effect, memo};
 use crate::format::{clock, millis};
 use crate::keys::on_action;
 use crate::live::Live;
-use crate::markup::Markup;
-use crate::markup::frame::{Beside, head, row};
-use crate::markup::toolbar;
+use crate::markup::{Markup, toolbar};
 use crate::state::shortcuts::Action;
-use crate::state::summary::summary;
-use crate::state::traffic::{Filter, export, listed};
+use crate::state::traffic::{Filter, listed};
 use crate::state::window::moved;
 use crate::state::work::Shown;
 
@@ -38,7 +33,6 @@ pub fn TrafficView(
     only: Option<u8>,
 ) -> impl IntoView {
     let live = Live::get();
-    let Narrow(narrow) = expect_context();
     let bus = StoredValue::new(bus);
     let filter = RwSignal::new(Filter {
         unit: only,
@@ -47,7 +41,6 @@ pub fn TrafficView(
     let frozen = RwSignal::new(None::<Session>);
     let cursor = RwSignal::new(None::<usize>);
     let chosen = RwSignal::new(None::<u32>);
-    let selected = RwSignal::new(None);
     let in_detail = RwSignal::new(false);
 
     // While paused, a copy is shown that stands still.
@@ -84,22 +77,9 @@ pub fn TrafficView(
             return;
         };
         with(&mut |session| {
-            let Some(frame) = session.frame(index) else {
-                return;
-            };
-            let context = Context {
-                framing: session.framing(),
-                device: kind(frame.unit),
-            };
-            let summary = scratch
-                .try_update_value(|s| summary(session, index, &context, s))
-                .flatten();
-            if let Some(summary) = summary {
-                let beside = Beside {
-                    place: time(session.at(index)),
-                    latency: Some(latency(session, index).map_or_else(String::new, millis)),
-                };
-                row(html, index, &summary, &beside);
+            if let Some(frame) = session.frame(index) {
+                let place = time(session.at(index));
+                draw_row(html, session, index, kind(frame.unit), place, scratch);
             }
         });
     });
@@ -144,15 +124,6 @@ pub fn TrafficView(
         chosen.set(Some(frame));
         cursor.set(at);
     });
-    let on_open = Callback::new(move |(_, target): (usize, Option<web_sys::Element>)| {
-        let pair = target
-            .and_then(|t| t.closest("[data-pair]").ok().flatten())
-            .and_then(|t| t.get_attribute("data-pair")?.parse().ok());
-        match pair {
-            Some(pair) => go.run(pair),
-            None => in_detail.set(true),
-        }
-    });
     on_action(move |action| match action {
         Action::Next | Action::Previous => {
             let key = if action == Action::Next { "j" } else { "k" };
@@ -168,24 +139,12 @@ pub fn TrafficView(
     });
 
     let on_act = Callback::new(move |act: Act| match act.name.as_str() {
-        "pause" => {
-            let mut copy = None;
-            if frozen.with_untracked(Option::is_none) {
-                untrack(|| with(&mut |session| copy = Some(session.clone())));
-            }
-            frozen.set(copy);
-        }
+        "pause" => pause(frozen, &with),
         "clear" => {
-            let mut end = 0;
-            untrack(|| with(&mut |session| end = session.len()));
+            let end = end(&with);
             filter.update(|f| f.from = end);
         }
-        "save" => {
-            let mut text = String::new();
-            let listed = frames.get_untracked();
-            untrack(|| with(&mut |session| text = export(session, &listed)));
-            save(&format!("{}.hex", bus.get_value()), &text);
-        }
+        "save" => save_frames(&bus.get_value(), &frames.get_untracked(), &with),
         name => filter.update(|f| match name {
             "unit" => f.unit = act.value.trim().parse().ok(),
             "function" => f.function = act.value.parse().ok(),
@@ -209,46 +168,16 @@ pub fn TrafficView(
         filter.with(|f| toolbar::traffic(html, &now, f));
     });
     view! {
-        <div class="traffic" class:show-detail=move || narrow.get() && in_detail.get()>
-            <Drawn class="toolbar" draw=tools on_act=on_act/>
-            <div class="panes">
-                <section class="pane list-pane" aria-label="Frames">
-                    <div
-                        class="frame-row frame-head with-latency"
-                        aria-hidden="true"
-                        inner_html=head("Time", true)
-                    ></div>
-                    <Windowed
-                        label="Frames"
-                        count=Signal::derive(move || frames.with(|f| f.len()))
-                        row_height=Signal::derive(move || if narrow.get() { 56 } else { 28 })
-                        cursor=cursor
-                        draw=draw
-                        follow=true
-                        on_open=on_open
-                        testid="traffic-list"
-                    />
-                </section>
-                <section class="pane detail-pane" aria-label="Frame">
-                    <button class="button back" on:click=move |_| in_detail.set(false)>
-                        "Back to the frames"
-                    </button>
-                    <FrameDetail
-                        shown=shown
-                        selected=Selected(selected)
-                        aside=aside
-                        on_pair=go
-                    />
-                </section>
-            </div>
-        </div>
+        <TrafficPanes
+            frames=frames
+            cursor=cursor
+            draw=draw
+            shown=shown
+            aside=aside
+            go=go
+            in_detail=in_detail
+            tools=tools
+            on_act=on_act
+        />
     }
-}
-
-/// Time from the request to its answer.
-fn latency(session: &Session, index: u32) -> Option<u64> {
-    let frame = session.frame(index)?;
-    let is_answer = matches!(frame.role, Role::Response | Role::Exception);
-    let pair = frame.pair().filter(|pair| is_answer && *pair < index)?;
-    Some(session.at(index)?.since(session.at(pair)?))
 }

@@ -21,9 +21,10 @@
 //! | decode | `hart-view` (`data-view`: `frames`, `procedures`, `map`), `hart-procedures`, `hart-run`, `hart-step` (`data-key`), `hart-open-run`, and those of the decode page |
 //! | tabs | `hart-tab` (`data-tab`) |
 //! | a value | `hart-value` (`data-key`: command and field), `value-facts` |
-//! | overview | `hart-overview`, `hart-forced`, `hart-position`, `hart-answered`, `hart-ne107`, `hart-set` (`data-key`), `hart-trend` |
-//! | other tabs | `hart-setup`, `hart-unavailable`, `hart-variables`, `hart-status`, `hart-byte`, `hart-bit` (`data-key`, `data-on`), `hart-read`, `hart-job`, `hart-cancel` |
-//! | status map | `hart-map-page`, `hart-map-view`, `hart-map`, `hart-map-row` (`data-index`, `data-category`), `hart-map-source`, `hart-map-beside`, `hart-map-family`, `hart-map-save`, `hart-map-file`, `hart-result` |
+//! | above the tabs | `hart-forced` |
+//! | overview | `hart-overview`, `hart-position`, `hart-state`, `hart-answered`, `hart-ne107`, `hart-set` (`data-key`), `hart-trend` |
+//! | other tabs | `hart-setup`, `hart-unavailable`, `hart-variables`, `hart-status`, `hart-ne107`, `hart-result`, `hart-byte`, `hart-bit` (`data-key`, `data-on`), `hart-read`, `hart-job`, `hart-cancel` |
+//! | status map | `hart-map-page`, `hart-map-view`, `hart-map`, `hart-map-row` (`data-index`, `data-category`), `hart-map-source`, `hart-map-beside`, `hart-map-family`, `hart-map-status`, `hart-map-save`, `hart-map-file`, `hart-result` |
 //! | a line | `hart-bus`, `hart-link`, `hart-scan`, `hart-tag`, `hart-find`, `hart-find-long`, `hart-search`, `hart-found`, and those of the traffic |
 
 pub mod markup;

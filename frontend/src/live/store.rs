@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use leptos::prelude::*;
-use shared::proto::{Block, PROGRAM_PREFIXES, ToBackend, ToPage};
+use shared::proto::{Block, HART_PREFIX, PROGRAM_PREFIXES, ToBackend, ToPage};
 
 use super::backoff::wait_ms;
 use super::socket::{Event, Socket};
@@ -165,7 +165,17 @@ impl Live {
         let _gone = self.inner.try_update_value(|inner| inner.heard = now_ms());
         match event {
             Event::Open => self.send(&[Plant::hello()]),
-            Event::Text(text) if is_for_program(&text) => self.pass_on(&text),
+            Event::Text(text) if is_for_program(&text) => {
+                let mut changed = false;
+                if text.starts_with(HART_PREFIX) {
+                    self.plant
+                        .update_untracked(|plant| changed = plant.hart(&text));
+                }
+                if changed {
+                    self.notify_soon();
+                }
+                self.pass_on(&text);
+            }
             Event::Text(text) => match wire::read(&text) {
                 Ok(message) => self.take(message, text),
                 Err(error) => {

@@ -1,6 +1,6 @@
 //! A device in the list of all, and what its valve does.
 
-use shared::proto::Outcome;
+use shared::proto::{NO_POLLING, Outcome};
 
 use super::Markup;
 use super::valve::{bar, torque};
@@ -107,8 +107,11 @@ pub fn row(html: &mut Markup, device: &DeviceState, overview: &Overview, now: u6
 
 /// Where a device is on its bus.
 fn unit(device: &DeviceState) -> String {
-    let word = if device.is_hart() { "poll" } else { "unit" };
-    format!("{word} {}", device.info.unit)
+    match device.info.unit {
+        NO_POLLING if device.is_hart() => "by tag or address".to_owned(),
+        unit if device.is_hart() => format!("poll {unit}"),
+        unit => format!("unit {unit}"),
+    }
 }
 
 fn since(device: &DeviceState, now: u64) -> String {

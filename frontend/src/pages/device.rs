@@ -58,7 +58,7 @@ pub fn DevicePage(
             let (now, up) = (live.now.get(), live.conn.get().is_up());
             live.plant.with(|p| {
                 if let Some(d) = tag.with_value(|t| p.device(t)) {
-                    make(html, d, &Overview::of(d.device, &d.image), now, up);
+                    make(html, d, &d.overview(), now, up);
                 }
             });
         })

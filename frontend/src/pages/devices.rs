@@ -13,7 +13,6 @@ use crate::live::Live;
 use crate::markup::{Markup, device};
 use crate::router::Router;
 use crate::state::health::{Health, health};
-use crate::state::overview::Overview;
 use crate::state::plant::Plant;
 use crate::state::route::{Route, Screen};
 use crate::state::shortcuts::Action;
@@ -30,7 +29,7 @@ pub fn DevicesPage() -> impl IntoView {
         live.plant.with(|plant| {
             let mut order: Vec<(Health, usize)> = Vec::new();
             for (at, d) in plant.devices.iter().enumerate() {
-                let health = health(d, &Overview::of(d.device, &d.image));
+                let health = health(d, &d.overview());
                 // The worst first, equal ones as configured.
                 let place = order.partition_point(|(other, _)| *other >= health);
                 order.insert(place, (health, at));
@@ -44,7 +43,7 @@ pub fn DevicesPage() -> impl IntoView {
         live.plant.with(|plant| {
             let device = order.with(|o| o.get(at).copied());
             if let Some(d) = device.and_then(|at| plant.devices.get(at)) {
-                device::row(html, d, &Overview::of(d.device, &d.image), now, up);
+                device::row(html, d, &d.overview(), now, up);
             }
         });
     });

@@ -37,6 +37,45 @@ pub struct Figure {
     pub quality: Option<&'static str>,
 }
 
+impl Figure {
+    /// The position of a HART device: the second variable of an answer to command 3, which came at
+    /// a time; `None` if the device has no value, or one that is no percentage.
+    ///
+    /// Shape: status of two bytes, loop current, then unit code and number for each variable.
+    /// Source: PUB092-003-00, table 3: SV is the position.
+    #[must_use]
+    pub fn of_hart(answer: &[u8], at: u64) -> Option<Self> {
+        // The address is long or short, and up to three bytes of expansion follow it.
+        let first = *answer.first()?;
+        let address = if first & 0x80 == 0 { 1 } else { 5 };
+        let skip = 1 + address + usize::from(first >> 5 & 3) + COMMAND_TO_SECOND;
+        let second = answer.get(skip..)?;
+        // The check byte follows.
+        let &[unit, a, b, c, d, _] = second.first_chunk()?;
+        let value = f32::from_be_bytes([a, b, c, d]);
+        if unit != PERCENT || value.abs() > 1000.0 || value.is_nan() {
+            return None;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "at most ten thousand in each direction"
+        )]
+        let tenths = (value * 10.0).round() as i32;
+        let sign = if tenths < 0 { "-" } else { "" };
+        let (whole, part) = (tenths.abs() / 10, tenths.abs() % 10);
+        Some(Self {
+            value: f64::from(value),
+            text: match part {
+                0 => format!("{sign}{whole}"),
+                part => format!("{sign}{whole}.{part}"),
+            },
+            unit: "%",
+            at,
+            quality: None,
+        })
+    }
+}
+
 /// A bit that is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Active {
@@ -76,6 +115,11 @@ pub struct Overview {
     /// Other facts: label and text.
     pub facts: Vec<(&'static str, String)>,
 }
+
+/// Command, count, status, loop current and the first variable.
+const COMMAND_TO_SECOND: usize = 2 + 2 + 4 + 5;
+/// The code of percent among the units of HART.
+const PERCENT: u8 = 57;
 
 /// Status bits that are said in other words.
 const SAID: [&str; 13] = [
@@ -372,6 +416,31 @@ mod tests {
             Overview::of(Device::None, &Image::new()),
             Overview::default()
         );
+    }
+
+    /// The worked answer R6: position 49.5 %, and no fourth variable.
+    #[test]
+    fn a_hart_device_tells_its_position() {
+        let hex = "86AEDD012345031A000041400000394248000039424600003941480000397FA0000052";
+        let frame = crate::state::absorb::bytes_of(hex);
+        let figure = Figure::of_hart(&frame, 7).unwrap();
+        assert_eq!(
+            (figure.text.as_str(), figure.unit, figure.at),
+            ("49.5", "%", 7)
+        );
+        // Unit and number of the second variable are bytes 19 to 23: none, and no percentage.
+        for (at, byte) in [(19, 39), (20, 0x7F)] {
+            let mut other = frame.clone();
+            other[at] = byte;
+            if at == 20 {
+                other[21] = 0xA0;
+            }
+            assert_eq!(Figure::of_hart(&other, 7), None, "{at}");
+        }
+        // A refusal has no data.
+        let refusal = crate::state::absorb::bytes_of("86AEDD0123450302404093");
+        assert_eq!(Figure::of_hart(&refusal, 7), None);
+        assert_eq!(Figure::of_hart(&[], 7), None);
     }
 
     #[test]

@@ -11,6 +11,8 @@ pub use parts::{BusState, DeviceState};
 
 use super::absorb::{absorb, bytes_of};
 use super::job::Job;
+use super::overview::Figure;
+use super::wire;
 use crate::format::encode;
 
 /// Frames kept for each bus.
@@ -199,6 +201,20 @@ impl Plant {
             bus.session
                 .forget_before(bus.session.len().saturating_sub(KEPT));
         }
+    }
+
+    /// Takes news about a HART device in, as far as the list of all devices shows it; true if that
+    /// changed something.
+    pub fn hart(&mut self, text: &str) -> bool {
+        let polled = wire::hart::polled(text);
+        let Some((tag, answer, at)) = polled.filter(|(_, answer, _)| !answer.is_empty()) else {
+            return false;
+        };
+        let device = self.device_mut(&tag);
+        device.is_some_and(|device| {
+            device.position = Figure::of_hart(&answer, at);
+            true
+        })
     }
 
     fn settle(&mut self, id: u32, outcome: Outcome, text: &str) -> Vec<ToBackend> {

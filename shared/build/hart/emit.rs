@@ -174,10 +174,11 @@ impl Emitter<'_> {
             for p in &lines {
                 writeln!(
                     out,
-                    "        Mapped {{ byte: {}, bit: {}, category: {}, source: {}, reading: {} }},",
+                    "        Mapped {{ byte: {}, bit: {}, category: {}, printed: {:?}, source: {}, reading: {} }},",
                     p.byte,
                     p.bit,
                     p.category,
+                    p.printed,
                     self.source("rotork-hart", &part(p.table, Some(p.page))),
                     self.reading(&p.reading)
                 )?;

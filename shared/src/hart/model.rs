@@ -331,6 +331,8 @@ pub struct Mapped {
     pub bit: u8,
     /// Code of the category.
     pub category: u8,
+    /// The name that the table has for the bit.
+    pub printed: &'static str,
     /// Table of the manual.
     pub source: Source,
     /// What is open about it.

@@ -135,10 +135,8 @@ impl Unit {
     /// A command was done: all whose turn it was with it get the news.
     pub fn done(&mut self, ask: &Ask, news: &HartNews, now: Instant) {
         for watch in &mut self.watches {
-            let Some(at) = watch.asks.iter().position(|a| a == ask) else {
-                continue;
-            };
-            if watch.due > now || at != watch.at {
+            // The same command may come more than once in a round.
+            if watch.due > now || watch.asks.get(watch.at) != Some(ask) {
                 continue;
             }
             watch.tell(ask, news.clone());
@@ -212,5 +210,47 @@ impl Watch {
         // A round that took longer than its period is followed by the next at once.
         self.due = (self.began + self.period).max(now);
         self.began = self.due;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::hart::link::Target;
+    use tokio::sync::mpsc;
+
+    /// Dynamic variables twice, then status: each in its turn, and round again.
+    #[tokio::test(start_paused = true)]
+    async fn a_round_may_ask_the_same_again() {
+        let ask = |number| Ask {
+            number,
+            data: Vec::new(),
+        };
+        let news = |command| HartNews::Exchange {
+            id: None,
+            device: "FV-1".into(),
+            command,
+            request: String::new(),
+            response: String::new(),
+            outcome: Outcome::Ok,
+            text: String::new(),
+            at_us: 0,
+            took_us: 0,
+            tries: 1,
+        };
+        let (sender, _heard) = mpsc::channel(Outlet::SIZE);
+        let mut unit = Unit::new("FV-1".into(), 0, Device::new(Target::Polling(0)));
+        let round = vec![ask(3), ask(3), ask(48)];
+        let (period, now) = (Duration::from_secs(1), Instant::now());
+        unit.watch(ClientId(1), round, period, Outlet::new(sender), now);
+        let mut asked = Vec::new();
+        for _ in 0..3 {
+            let ask = unit.next(now).unwrap();
+            asked.push(ask.number);
+            unit.done(&ask, &news(ask.number), now);
+        }
+        assert_eq!(asked, [3, 3, 48]);
+        assert!(unit.next(now).is_none(), "the round is over");
+        assert_eq!(unit.next(now + period).unwrap().number, 3);
     }
 }

@@ -2,7 +2,6 @@
 
 use crate::format::thousands;
 use crate::hart::state::site::{Found, Job, Link, Plant};
-use crate::hart::state::unit::raw_of;
 use crate::markup::Markup;
 use crate::markup::control::Button;
 
@@ -119,52 +118,71 @@ pub fn search(html: &mut Markup, job: &Job, online: bool, tag: &str) {
     .draw(html);
 }
 
-/// What was found, with the configured devices for comparison.
+/// What was found, then the configured devices that were not.
 pub fn found(html: &mut Markup, all: &[Found], plant: &Plant, bus: &str) {
-    let configured = plant.devices.iter().filter(|d| d.bus == bus);
     html.open("table", &[("class", "hart-found-list")]);
     html.open("thead", &[]).open("tr", &[]);
-    for head in ["Poll", "Address", "Device", "Revision"] {
+    for head in ["Poll", "Address", "Device", "Revision", "Configured as"] {
         html.open("th", &[("scope", "col")]).text(head).close("th");
     }
     html.close("tr").close("thead").open("tbody", &[]);
+    let mut seen = Vec::new();
     for one in all {
+        let known = one.known(all, plant, bus);
+        seen.extend(known.map(|known| &known.tag));
         html.open("tr", &[("data-testid", "hart-found")]);
-        let poll = one.polling.map_or("–".to_owned(), |p| p.to_string());
-        html.node("td", "num", &poll);
+        poll(html, one.polling);
         html.node("td", "mono", &one.address().unwrap_or_default());
-        let decoded = &one.shown.decoded;
-        let maker = super::super::state::unit::find(&one.shown, "manufacturer")
-            .map_or_else(String::new, |(_, f)| decoded.bare_text(f));
-        html.node("td", "", &maker);
-        let revision = raw_of(&one.shown, "universal_revision");
-        html.node(
-            "td",
-            "num",
-            &revision.map_or_else(String::new, |r| format!("HART {r}")),
-        );
+        let (name, digits) = one.kind().unwrap_or_default();
+        html.open("td", &[]).text(&name).text(" ");
+        html.node("span", "quiet", &digits).close("td");
+        let revision = one
+            .identity
+            .as_ref()
+            .map(|i| format!("HART {}", i.revision));
+        html.node("td", "num", &revision.unwrap_or_default());
+        configured(html, known.map(|known| known.tag.as_str()));
         html.close("tr");
     }
-    for device in configured {
+    let rest = plant.devices.iter().filter(|d| d.bus == bus);
+    for device in rest.filter(|d| !seen.contains(&&d.tag)) {
         html.open("tr", &[("class", "quiet")]);
-        html.node("td", "num", &device.polling.to_string());
-        html.node("td", "", "configured");
-        html.open("td", &[]).open(
-            "a",
-            &[(
-                "href",
-                &format!("#/device/{}", crate::format::encode(&device.tag)),
-            )],
-        );
-        html.text(&device.tag).close("a").close("td");
-        html.node("td", "", "").close("tr");
+        poll(html, device.polling);
+        let words = match device.polling {
+            Some(_) => "not found yet",
+            None => "found by its tag or address",
+        };
+        html.open("td", &[("colspan", "3")]).text(words).close("td");
+        configured(html, Some(&device.tag));
+        html.close("tr");
     }
     html.close("tbody").close("table");
+}
+
+fn poll(html: &mut Markup, polling: Option<u8>) {
+    let poll = polling.map_or("–".to_owned(), |p| p.to_string());
+    html.node("td", "num", &poll);
+}
+
+/// The way to a device of the configuration.
+fn configured(html: &mut Markup, tag: Option<&str>) {
+    html.open("td", &[]);
+    match tag {
+        Some(tag) => {
+            let href = format!("#/device/{}", crate::format::encode(tag));
+            html.open("a", &[("href", &href)]).text(tag).close("a");
+        }
+        None => {
+            html.node("span", "quiet", "not configured");
+        }
+    }
+    html.close("td");
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hart::state::site::Known;
 
     #[test]
     fn the_line_says_who_is_on_it() {
@@ -182,5 +200,36 @@ mod tests {
         assert!(html.contains("secondary master") && html.contains("another master"));
         assert!(html.contains("sends bursts"));
         assert!(!html.contains("disabled"), "{html}");
+    }
+
+    /// The worked answer R2 to command 0, of a device at address 0.
+    #[test]
+    fn what_is_found_says_what_it_is() {
+        let response = "068000180020FE6EDD0507020108000123450505000700006E006E019B";
+        let known = |tag: &str, polling| Known {
+            tag: tag.into(),
+            family: None,
+            bus: "loop".into(),
+            polling,
+        };
+        let plant = Plant {
+            buses: Vec::new(),
+            devices: vec![known("FV-1", Some(0)), known("FV-2", None)],
+        };
+        let all = [Found::new(Some(0), response, 1).unwrap()];
+        let mut html = Markup::new();
+        found(&mut html, &all, &plant, "loop");
+        let html = html.finish();
+        assert!(html.contains("2EDD012345") && html.contains("HART 7"));
+        assert!(html.contains("Rotork actuator"));
+        assert_eq!(
+            html.matches("#/device/FV-1").count(),
+            1,
+            "once, where it was found"
+        );
+        assert!(
+            html.contains("<td class=\"num\">–</td>"),
+            "no address 0 for FV-2"
+        );
     }
 }

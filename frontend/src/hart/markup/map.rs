@@ -1,10 +1,11 @@
 //! The condensed status map as a matrix: bits by categories.
 
 use shared::device::Family;
-use shared::hart::ne107::{Map, report};
+use shared::hart::model::Preset;
+use shared::hart::ne107::Report;
 
 use crate::components::ne107::Sign;
-use crate::hart::state::map::{bit, category, place, rows};
+use crate::hart::state::map::{Known, bit, category, mapped, place, rows};
 use crate::markup::Markup;
 use crate::markup::device::sign;
 
@@ -23,10 +24,18 @@ pub const fn sign_of(code: u8) -> Option<Sign> {
     }
 }
 
+/// A map with the example that it is.
+pub type Source<'a> = (&'a Known, Option<&'static Preset>);
+
 /// The matrix; `beside` is another map to compare with.
-pub fn matrix(html: &mut Markup, family: Option<Family>, map: &Map, beside: Option<&Map>) {
-    let mut rows = rows(family, map);
-    if let Some(beside) = beside {
+pub fn matrix(
+    html: &mut Markup,
+    family: Option<Family>,
+    map: Source<'_>,
+    beside: Option<Source<'_>>,
+) {
+    let mut rows = rows(family, map.0);
+    if let Some((beside, _)) = beside {
         rows.extend(crate::hart::state::map::rows(family, beside));
         rows.sort_unstable();
         rows.dedup();
@@ -56,26 +65,31 @@ pub fn matrix(html: &mut Markup, family: Option<Family>, map: &Map, beside: Opti
     }
     html.close("tr").close("thead").open("tbody", &[]);
     for index in rows {
-        row(
-            html,
-            family,
-            index,
-            map.get(index),
-            beside.map(|b| b.get(index)),
-        );
+        row(html, family, index, map, beside);
     }
     html.close("tbody").close("table");
 }
 
-fn row(html: &mut Markup, family: Option<Family>, index: usize, code: u8, beside: Option<u8>) {
-    let differs = beside.is_some_and(|b| b != code);
+fn row(
+    html: &mut Markup,
+    family: Option<Family>,
+    index: usize,
+    map: Source<'_>,
+    beside: Option<Source<'_>>,
+) {
+    let code = map.0.get(index);
+    let other = beside.map(|(b, _)| b.get(index));
+    let differs = other.is_some_and(|b| b != code);
     html.open(
         "tr",
         &[
             ("class", if differs { "differs" } else { "" }),
             ("data-testid", "hart-map-row"),
             ("data-index", &index.to_string()),
-            ("data-category", &code.to_string()),
+            (
+                "data-category",
+                &code.map_or_else(String::new, |c| c.to_string()),
+            ),
         ],
     );
     let (status, number) = place(index);
@@ -94,10 +108,22 @@ fn row(html: &mut Markup, family: Option<Family>, index: usize, code: u8, beside
             html.node("span", "quiet", "no name known");
         }
     }
+    let presets = [map.1, beside.and_then(|b| b.1)];
+    for one in presets.into_iter().flatten() {
+        let Some(one) = mapped(one, index) else {
+            continue;
+        };
+        let printed = format!("{}: {}", one.source.part, one.printed);
+        html.text(" ").node("span", "quiet", &printed);
+        if let Some(reading) = one.reading {
+            html.text(" ");
+            super::reading(html, reading);
+        }
+    }
     html.close("th");
-    let odd = !COLUMNS.contains(&code);
+    let odd = code.filter(|code| !COLUMNS.contains(code));
     for column in COLUMNS {
-        let (here, there) = (column == code, beside == Some(column));
+        let (here, there) = (Some(column) == code, other == Some(Some(column)));
         html.open("td", &[("class", "map-cell")]);
         if here {
             let words = format!("is {}", category(column));
@@ -123,22 +149,31 @@ fn row(html: &mut Markup, family: Option<Family>, index: usize, code: u8, beside
             );
             html.text("○").close("span");
         }
-        if odd && column == 0 {
-            html.node("em", "quality", &format!("code {code}, {}", category(code)));
+        if column == 0 {
+            if let Some(code) = odd {
+                html.node("em", "quality", &format!("code {code}, {}", category(code)));
+            }
+            if code.is_none() {
+                html.node("em", "quality", "not read");
+            }
         }
         html.close("td");
     }
     html.close("tr");
 }
 
-/// What a device of this family makes of its status and a map.
-pub fn result(html: &mut Markup, family: Family, status: &[u8], map: &Map) {
-    let report = report(family, status, map);
+/// What a device makes of a status and a map; `None` if too little of the map is known.
+pub fn result(html: &mut Markup, status: &str, report: Option<Report>) {
     html.open(
         "p",
         &[("class", "hart-ne107"), ("data-testid", "hart-result")],
     );
-    html.text("With the status as read, such a map gives: ");
+    html.text(&format!("With {status}, the map gives: "));
+    let Some(report) = report else {
+        html.text("unknown, as entries of bits that are set were not read.");
+        html.close("p");
+        return;
+    };
     let mut some = false;
     for (bit, one) in [
         (0x08, Sign::Failure),
@@ -166,14 +201,20 @@ pub fn result(html: &mut Markup, family: Family, status: &[u8], map: &Map) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shared::hart::PRESETS;
+    use shared::hart::ne107::Map;
+
+    fn drawn(map: Source<'_>, beside: Option<Source<'_>>) -> String {
+        let mut html = Markup::new();
+        matrix(&mut html, Some(Family::Iq), map, beside);
+        html.finish()
+    }
 
     /// Table 20: valve obstructed (byte 1 bit 0) is out of specification, as printed.
     #[test]
     fn the_matrix_shows_the_example_of_table_20() {
-        let map = Map::example(Family::Iq).unwrap();
-        let mut html = Markup::new();
-        matrix(&mut html, Some(Family::Iq), &map, None);
-        let text = html.finish();
+        let map = Known::all(&Map::example(Family::Iq).unwrap());
+        let text = drawn((&map, None), None);
         assert!(
             text.contains("data-index=\"16\" data-category=\"4\""),
             "{text}"
@@ -182,20 +223,46 @@ mod tests {
         assert_eq!(text.matches("is Out of specification").count(), 2);
         assert_eq!(text.matches("is Maintenance required").count(), 1);
         assert_eq!(text.matches("is Function check").count(), 3);
-        let mut html = Markup::new();
-        matrix(&mut html, Some(Family::Iq), &Map::default(), Some(&map));
-        assert_eq!(html.finish().matches("class=\"differs\"").count(), 8);
+        let none = Known::all(&Map::default());
+        let text = drawn((&none, None), Some((&map, None)));
+        assert_eq!(text.matches("class=\"differs\"").count(), 8);
+    }
+
+    /// Readings R14 and R15: two cells of table 20 look swapped, one is as printed.
+    #[test]
+    fn an_example_shows_its_print_and_its_contradictions() {
+        let preset = &PRESETS[0];
+        let map = Known::all(&Map::of(preset));
+        for text in [
+            drawn((&map, Some(preset)), None),
+            drawn((&Known::NONE, None), Some((&map, Some(preset)))),
+        ] {
+            assert_eq!(text.matches(">R14<").count(), 2);
+            assert_eq!(text.matches(">R15<").count(), 1);
+            assert!(text.contains("table 20, p. 44: Valve Obstructed"), "{text}");
+            assert!(text.contains("two cells look swapped"), "in words");
+        }
+    }
+
+    #[test]
+    fn what_was_not_read_has_no_category() {
+        let text = drawn((&Known::NONE, None), None);
+        assert!(!text.contains("is No effect") && text.contains(">not read<"));
+        assert!(text.contains("data-index=\"9\" data-category=\"\""));
     }
 
     /// Local control fault alone: failure by table 20, nothing by the factory's map.
     #[test]
     fn the_result_follows_the_map() {
-        let say = |map: &Map| {
+        let say = |map: Known| {
             let mut html = Markup::new();
-            result(&mut html, Family::Iq, &[0x02, 0, 0, 0, 0, 0], map);
+            let report = map.report(Family::Iq, &[0x02, 0, 0, 0, 0, 0]);
+            result(&mut html, "this", report);
             html.finish()
         };
-        assert!(say(&Map::example(Family::Iq).unwrap()).contains("Failure"));
-        assert!(say(&Map::default()).contains("no category"));
+        let example = Map::example(Family::Iq).unwrap();
+        assert!(say(Known::all(&example)).contains("Failure"));
+        assert!(say(Known::all(&Map::default())).contains("no category"));
+        assert!(say(Known::NONE).contains("unknown"));
     }
 }

@@ -6,8 +6,8 @@ use shared::value::Value;
 
 use crate::components::ne107::Sign;
 use crate::format::age;
-use crate::hart::state::plan;
 use crate::hart::state::unit::{Good, Key, Unit, find, plain};
+use crate::hart::state::{condition, plan};
 use crate::markup::Markup;
 use crate::markup::device::sign;
 
@@ -21,20 +21,10 @@ fn bits(good: &Good, id: FieldId) -> impl Iterator<Item = (&'static Bit, bool)> 
 }
 
 /// The bits that are set in device status and command 48: alarms first.
-pub fn set_bits(html: &mut Markup, unit: &Unit) {
-    let Some(good) = unit.good(48) else {
+pub fn set_bits(html: &mut Markup, unit: &Unit, all: &[&Bit]) {
+    if unit.good(48).is_none() {
         html.node("p", "quiet", "Command 48 was not read yet.");
-        return;
-    };
-    let decoded = &good.shown.decoded;
-    let all: Vec<&Bit> = decoded
-        .fields()
-        .iter()
-        .filter_map(|f| match (f.name, f.value) {
-            (Name::HartBit(bit), Value::Bit { on: true, .. }) => Some(bit),
-            _ => None,
-        })
-        .collect();
+    }
     for (title, alarm) in [("Alarms", true), ("States", false)] {
         html.node("h3", "", title);
         let mut some = false;
@@ -61,6 +51,15 @@ pub fn set_bits(html: &mut Markup, unit: &Unit) {
 
 /// All bits of the answers that carry status, in their order.
 pub fn status(html: &mut Markup, unit: &Unit, now_us: u64) {
+    html.open("section", &[("class", "hart-status")]);
+    super::overview::ne107(html, unit, &condition::set_bits(unit));
+    let map = super::super::state::map::of_device(unit);
+    if let (Some(family), Some(map), Some(status)) =
+        (unit.family, map, condition::alarm_bytes(unit))
+    {
+        super::map::result(html, "the status as read", map.report(family, &status));
+    }
+    html.close("section");
     section(
         html,
         unit,
@@ -114,10 +113,16 @@ fn fields(html: &mut Markup, good: &Good) {
             &[("class", "hart-byte"), ("data-testid", "hart-byte")],
         );
         html.open("h3", &[]).text(&field.name.label()).text(" ");
-        html.node("code", "quiet", &decoded.raw(field)).close("h3");
+        html.node("code", "quiet", &decoded.raw(field));
+        let mut source = "";
+        if let Some((bit, _)) = bits(good, id).next() {
+            source = bit.source.part;
+            html.text(" ").node("span", "quiet", source);
+        }
+        html.close("h3");
         html.open("ul", &[("class", "hart-bits")]);
         for (bit, on) in bits(good, id) {
-            one(html, bit, on);
+            one(html, bit, on, source);
         }
         html.close("ul").close("section");
     }
@@ -143,13 +148,13 @@ fn fields(html: &mut Markup, good: &Good) {
     }
 }
 
-fn one(html: &mut Markup, bit: &Bit, on: bool) {
+/// A bit; its source where it is another than that of its byte.
+fn one(html: &mut Markup, bit: &Bit, on: bool, source: &str) {
     let class = match (on, bit.alarm) {
         (false, _) => "bit-off",
         (true, true) => "bit-on alarm",
         (true, false) => "bit-on",
     };
-    let source = format!("bit {}, {}", bit.bit, bit.source);
     html.open(
         "li",
         &[
@@ -157,7 +162,6 @@ fn one(html: &mut Markup, bit: &Bit, on: bool) {
             ("data-testid", "hart-bit"),
             ("data-key", bit.key),
             ("data-on", if on { "1" } else { "0" }),
-            ("title", &source),
         ],
     );
     html.node("code", "", &bit.bit.to_string());
@@ -174,6 +178,9 @@ fn one(html: &mut Markup, bit: &Bit, on: bool) {
     if !bit.alias.is_empty() {
         html.text(" ")
             .node("span", "quiet", &format!("also: {}", bit.alias));
+    }
+    if bit.source.part != source {
+        html.text(" ").node("span", "quiet", bit.source.part);
     }
     if let Some(reading) = bit.reading {
         html.text(" ");
@@ -193,7 +200,7 @@ fn one(html: &mut Markup, bit: &Bit, on: bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hart::state::unit::tests::{STATUS, unit};
+    use crate::hart::state::unit::tests::{STATUS, answer, request, unit};
 
     /// The worked answer R10: byte 0 local control fault, byte 2 bit 1, byte 4 A4, byte 5 40.
     #[test]
@@ -210,5 +217,36 @@ mod tests {
         assert!(html.contains("data-key=\"local_control_fault\" data-on=\"1\""));
         assert!(html.contains("also: "), "both names");
         assert!(html.contains("table 8"), "source");
+        assert!(html.contains("data-testid=\"hart-ne107\""), "the result");
+        assert!(
+            html.contains("table 8 stops at bit 6"),
+            "reading R4 in words"
+        );
+        assert!(
+            !html.contains("title="),
+            "nothing is told to the mouse only"
+        );
+    }
+
+    /// Local control fault alone: a failure by table 20, as the device's map has it.
+    #[test]
+    fn the_result_of_the_map_is_told_where_it_was_read() {
+        let mut known = unit(&[(48, STATUS.0, STATUS.1)]);
+        let draw = |unit: &Unit| {
+            let mut html = Markup::new();
+            status(&mut html, unit, 7);
+            html.finish()
+        };
+        assert!(!draw(&known).contains("hart-result"));
+        let data = [&[2, 11, 0, 64, 0, 0, 0, 0, 0x30][..], &[0; 27]].concat();
+        let (asked, answer) = (request(31, &[2, 11, 0, 64]), answer(31, 0x90, &data));
+        let ok = (shared::proto::Outcome::Ok, "");
+        known.take(&asked, &answer, 523, ok, (8, 2, 1));
+        let html = draw(&known);
+        let result = html.split("hart-result").nth(1).unwrap();
+        assert!(
+            result.split("</p>").next().unwrap().contains("Failure"),
+            "{result}"
+        );
     }
 }

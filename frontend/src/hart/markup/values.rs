@@ -1,163 +1,12 @@
 //! Values with unit, quality and age; raw bytes, source and reading on demand.
 
-use shared::device::Family;
 use shared::value::Quality;
 
 use crate::format::{age, millis};
+use crate::hart::state::plan;
 use crate::hart::state::unit::{Key, Reading, Unit, find, plain};
 use crate::markup::{Markup, facts};
 use crate::state::tree::Facts;
-
-/// Values that belong together.
-#[derive(Clone, Copy, Debug)]
-pub struct Group {
-    /// Its title.
-    pub title: &'static str,
-    /// Command, key of the field, and a label where the field's own does not do.
-    pub values: &'static [(u16, &'static str, &'static str)],
-}
-
-/// Everything of the set-up, in the order of the handheld's menus.
-pub const SETUP: [Group; 6] = [
-    Group {
-        title: "HART set-up",
-        values: &[
-            (13, "tag", ""),
-            (20, "long_tag", ""),
-            (13, "descriptor", ""),
-            (12, "message", ""),
-            (13, "date", ""),
-            (16, "final_assembly", ""),
-            (14, "serial", ""),
-        ],
-    },
-    Group {
-        title: "Loop configuration",
-        values: &[
-            (7, "polling_address", ""),
-            (7, "loop_current_mode", ""),
-            (131, "zero", ""),
-            (131, "span", ""),
-            (133, "mode", ""),
-        ],
-    },
-    Group {
-        title: "Range",
-        values: &[
-            (15, "upper_range", ""),
-            (15, "lower_range", ""),
-            (15, "damping", ""),
-            (15, "transfer_function", ""),
-            (15, "alarm_selection", ""),
-            (15, "write_protect", ""),
-            (15, "channel_flags", ""),
-            (14, "upper_limit", ""),
-            (14, "lower_limit", ""),
-            (14, "minimum_span", ""),
-        ],
-    },
-    Group {
-        title: "HART review",
-        values: &[
-            (0, "manufacturer", ""),
-            (0, "expanded_type", ""),
-            (0, "device_id", ""),
-            (0, "universal_revision", ""),
-            (0, "device_revision", ""),
-            (0, "hardware", ""),
-            (0, "flags", ""),
-            (0, "request_preambles", ""),
-            (0, "response_preambles", ""),
-            (0, "last_variable", ""),
-            (0, "change_counter", ""),
-            (0, "distributor", ""),
-            (0, "profile", ""),
-        ],
-    },
-    Group {
-        title: "Versions",
-        values: &[
-            (128, "version", "Actuator software (command 128)"),
-            (0, "software_revision", "HART card software revision"),
-            (0, "device_revision", ""),
-        ],
-    },
-    Group {
-        title: "Classification of the variables",
-        values: &[
-            (8, "pv_class", ""),
-            (8, "sv_class", ""),
-            (8, "tv_class", ""),
-            (8, "qv_class", ""),
-        ],
-    },
-];
-
-/// Something that the menus of a handheld show and no documented command reads.
-#[derive(Clone, Copy, Debug)]
-pub struct Unavailable {
-    /// What it is.
-    pub what: &'static str,
-    /// The families whose menus have it.
-    pub families: &'static [Family],
-    /// True if it is in the diagnostics menu, else in the set-up.
-    pub diagnostics: bool,
-}
-
-impl Unavailable {
-    /// The section of the manual that shows it for a family.
-    #[must_use]
-    pub const fn section(&self, family: Family) -> &'static str {
-        match (family, self.diagnostics) {
-            (Family::Cva, false) => "11.3",
-            (Family::Cva, true) => "11.4",
-            (Family::Iq, false) => "12.2",
-            (Family::Iq, true) => "12.3",
-            (Family::Cma, false) => "13.2",
-            (Family::Cma, true) => "13.3",
-            (Family::Ck, false) => "14.2",
-            (Family::Ck, true) => "14.3",
-            (Family::Si, false) => "15.2",
-            (Family::Si, true) => "15.3",
-        }
-    }
-}
-
-/// All of them.
-pub const UNAVAILABLE: [Unavailable; 10] = {
-    use Family::{Ck, Cma, Cva, Iq, Si};
-    const fn setup(what: &'static str, families: &'static [Family]) -> Unavailable {
-        Unavailable {
-            what,
-            families,
-            diagnostics: false,
-        }
-    }
-    const fn diagnostics(what: &'static str, families: &'static [Family]) -> Unavailable {
-        Unavailable {
-            diagnostics: true,
-            ..setup(what, families)
-        }
-    }
-    [
-        setup(
-            "Valve actions: torque or thrust limits, closing direction, seating at limit or torque",
-            &[Cva, Iq, Ck],
-        ),
-        setup("Deadband", &[Cva, Iq, Cma, Ck, Si]),
-        setup("Hysteresis", &[Iq, Ck, Si]),
-        setup("Feedback current, its end points and its source", &[Cva]),
-        setup(
-            "Action, position and time-out on loss of signal or communication",
-            &[Cva, Iq, Cma, Ck, Si],
-        ),
-        setup("Motion inhibit time, function of the ESD input", &[Iq, Ck]),
-        setup("Partial stroke: travel, limit, time-outs", &[Iq, Ck, Si]),
-        setup("Auxiliary inputs: function and contact type", &[Iq, Ck, Si]),
-        diagnostics("Number of operations towards open and close", &[Iq, Si]),
-        diagnostics("Historic torque over position", &[Iq]),
-    ]
-};
 
 /// A value of a command, addressed by the key of its field or the end of its path.
 pub fn value(
@@ -269,13 +118,10 @@ fn said(html: &mut Markup, reading: Option<&Reading>, facts: Option<&Facts>) {
             html.node("span", "quiet", "not read");
         }
         Some(Reading { bad: Some(bad), .. }) => {
-            html.text(" ")
-                .open(
-                    "em",
-                    &[("class", "quality stale-mark"), ("title", &bad.text)],
-                )
-                .text(if facts.is_some() { "stale" } else { &bad.text })
-                .close("em");
+            if facts.is_some() {
+                html.text(" ").node("em", "quality stale-mark", "stale");
+            }
+            html.text(" ").node("span", "quiet", &bad.text);
         }
         Some(_) => {}
     }
@@ -283,7 +129,7 @@ fn said(html: &mut Markup, reading: Option<&Reading>, facts: Option<&Facts>) {
 }
 
 /// Everything about a field of the last good answer.
-fn facts_of(reading: Option<&Reading>, field: &str) -> Option<Facts> {
+pub(super) fn facts_of(reading: Option<&Reading>, field: &str) -> Option<Facts> {
     let good = reading?.good.as_ref()?;
     let decoded = &good.shown.decoded;
     if !field.contains('.') {
@@ -306,43 +152,6 @@ pub fn described(command: u16, field: &str) -> String {
         .map_or_else(|| field.to_owned(), |i| i.label.to_owned())
 }
 
-/// The groups of the set-up, and what can't be read.
-pub fn setup(html: &mut Markup, unit: &Unit, open: &[String], now_us: u64) {
-    for group in &SETUP {
-        html.open("section", &[("class", "hart-group")]);
-        html.node("h2", "", group.title);
-        for (command, field, label) in group.values {
-            value(html, unit, &plain(*command), field, label, (open, now_us));
-        }
-        html.close("section");
-    }
-    html.open(
-        "section",
-        &[("class", "hart-group"), ("data-testid", "hart-unavailable")],
-    );
-    html.node("h2", "", "Not available over documented commands");
-    html.node(
-        "p",
-        "quiet",
-        "The menus of a handheld show these too. PUB092-003 documents no command that reads them, so \
-         they are not shown here, and their absence says nothing about their value.",
-    );
-    html.open("ul", &[("class", "plain-list")]);
-    for item in &UNAVAILABLE {
-        let own = unit.family.filter(|f| item.families.contains(f));
-        if unit.family.is_some() && own.is_none() {
-            continue;
-        }
-        html.open("li", &[]).text(item.what);
-        if let Some(family) = own {
-            let source = format!(" PUB092-003-00, section {}", item.section(family));
-            html.node("span", "quiet", &source);
-        }
-        html.close("li");
-    }
-    html.close("ul").close("section");
-}
-
 /// Dynamic variables with their classes, then device variables with their status.
 pub fn variables(html: &mut Markup, unit: &Unit, open: &[String], now_us: u64) {
     let third = crate::hart::state::condition::third(unit.family);
@@ -360,7 +169,7 @@ pub fn variables(html: &mut Markup, unit: &Unit, open: &[String], now_us: u64) {
     html.close("section");
     html.open("section", &[("class", "hart-group")]);
     html.node("h2", "", "Device variables");
-    let key = crate::hart::state::plan::variables();
+    let key = plan::variables();
     for slot in 0..5 {
         let name = facts_of(unit.reading(&key), &format!("slot[{slot}].code"));
         let name = name.map_or_else(|| format!("Device variable {slot}"), |f| f.value);
@@ -393,19 +202,32 @@ pub fn variables(html: &mut Markup, unit: &Unit, open: &[String], now_us: u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hart::state::unit::tests::{POLL, unit};
+    use crate::hart::state::unit::tests::{POLL, answer, hear, poll, request, unit};
+    use shared::proto::Outcome;
 
     #[test]
-    fn not_read_is_not_zero() {
+    fn reasons_are_text() {
+        let mut unit = unit(&[]);
+        hear(&mut unit, 3, 0, &poll(50.0), 1);
+        let silence = (Outcome::Silence, "no answer");
+        unit.take(&request(3, &[]), &[], 3, silence, (2_000_000, 1, 4));
+        let ok = (Outcome::Ok, "");
+        let mut refusal = answer(131, 0, &[]);
+        // Response code 64, command not implemented; the check byte follows.
+        refusal[8] = 64;
+        let last = refusal.len() - 1;
+        refusal[last] ^= 64;
+        unit.take(&request(131, &[]), &refusal, 131, ok, (3, 1, 1));
         let mut html = Markup::new();
-        setup(&mut html, &unit(&[]), &[], 0);
+        variables(&mut html, &unit, &[], 3);
+        super::super::setup::setup(&mut html, &unit, &[], 3);
         let html = html.finish();
-        let values = html.matches("data-testid=\"hart-value\"").count();
-        assert_eq!(html.matches("not read<").count(), values);
-        assert!(values > 40, "{values}");
-        // Every value has a label of the tables.
-        assert!(html.contains("Loop current mode") && html.contains("Final assembly number"));
-        assert!(html.contains("Deadband"), "what can't be read is listed");
+        assert!(html.contains(">stale</em> <span class=\"quiet\">no answer<"));
+        assert!(html.contains(">Refused: Command not implemented"), "{html}");
+        assert!(
+            !html.contains("title="),
+            "nothing is told to the mouse only"
+        );
     }
 
     #[test]
@@ -424,5 +246,6 @@ mod tests {
         assert!(html.contains("HART universal commands"), "source");
         assert!(html.contains("not a number"), "the fourth has no value");
         assert!(html.contains(">R35<"), "a reading is named");
+        assert!(html.contains("never derived"), "in words");
     }
 }

@@ -7,7 +7,7 @@ use leptos::prelude::*;
 use super::trend::Trend;
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::icon::Glyph;
-use crate::hart::markup::{overview, status, values};
+use crate::hart::markup::{overview, setup, status, values};
 use crate::hart::state::unit::Unit;
 use crate::hart::store::Store;
 use crate::markup::control::Button;
@@ -90,25 +90,16 @@ pub(super) fn tools(store: Store) -> (Draw, Callback<Act>) {
 pub(super) fn OverviewPage() -> impl IntoView {
     let store = Store::get();
     let opened = RwSignal::new(Vec::new());
-    let forced = shown(store, opened, |html, unit, _, _| {
-        overview::forced(html, unit);
+    let picture = shown(store, opened, |html, unit, _, now| {
+        valve::valve(html, &overview::picture(unit, now));
     });
-    let picture = shown(store, opened, |html, unit, _, _| {
-        valve::valve(html, &overview::picture(unit));
-    });
-    let figures: Draw = Arc::new(move |html: &mut Markup| {
-        let (opened, now, online) = (opened.get(), store.now_us.get(), store.online.get());
-        store
-            .unit
-            .with(|unit| overview::figures(html, unit, &opened, now, online));
-    });
+    let figures = shown(store, opened, overview::figures);
     let health = shown(store, opened, |html, unit, _, _| {
         overview::health(html, unit);
     });
     let (tools, on_act) = tools(store);
     view! {
         <div class="hart-page" data-testid="hart-overview">
-            <Drawn class="hart-forced-all" role="status" draw=forced/>
             <Drawn class="toolbar" draw=tools on_act=on_act/>
             <div class="overview">
                 <Drawn class="overview-valve" draw=picture/>
@@ -125,7 +116,7 @@ pub(super) fn OverviewPage() -> impl IntoView {
 pub(super) fn SetupPage() -> impl IntoView {
     let store = Store::get();
     let opened = RwSignal::new(Vec::new());
-    let draw = shown(store, opened, values::setup);
+    let draw = shown(store, opened, setup::setup);
     let (tools, on_act) = tools(store);
     view! {
         <div class="hart-page" data-testid="hart-setup">

@@ -13,8 +13,12 @@ use super::device::tools;
 use crate::browser::save;
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::icon::{Glyph, Icon};
+use crate::decode_store::DecodeStore;
 use crate::hart::markup::map::{matrix, result};
-use crate::hart::state::map::{from_csv, of_device, preset, table, to_csv};
+use crate::hart::state::condition::alarm_bytes;
+use crate::hart::state::map::{
+    Known, from_csv, of_device, preset, refused, status_in, table, to_csv, typed,
+};
 use crate::hart::state::unit::Unit;
 use crate::hart::store::Store;
 use crate::markup::Markup;
@@ -22,7 +26,7 @@ use crate::markup::control::{Button, Choice};
 use crate::task::promise;
 
 /// A map with where it is from.
-type Named = (String, Map);
+type Named = (String, Known);
 
 /// The map of the device on the line.
 #[component]
@@ -48,12 +52,22 @@ pub(super) fn MapView(
     let picked = RwSignal::new(None::<Family>);
     let file = RwSignal::new(None::<Named>);
     let problem = RwSignal::new(String::new());
+    let given = RwSignal::new(String::new());
+    let input = use_context::<DecodeStore>();
+    let captured = move || {
+        let input = input?;
+        input.epoch.track();
+        let selected = input.cursor.get().and_then(|at| u32::try_from(at).ok());
+        input
+            .work
+            .with(|work| status_in(&work.as_ref()?.session, selected))
+    };
     let of = move |key: &str| -> Option<Named> {
         match key {
             "device" => unit?.with(of_device).map(|m| ("the device".to_owned(), m)),
             "file" => file.get(),
-            "factory" => Some(("no effect for all".to_owned(), Map::default())),
-            key => preset(key).map(|p| (p.label.to_owned(), Map::of(p))),
+            "factory" => Some(("no effect for all".to_owned(), Known::all(&Map::default()))),
+            key => preset(key).map(|p| (p.label.to_owned(), Known::all(&Map::of(p)))),
         }
     };
     // Unless somebody chose: what the device says, else the first example.
@@ -125,49 +139,79 @@ pub(super) fn MapView(
             testid: "hart-map-save",
             words: "Save as file",
             glyph: Some(Glyph::Save),
-            disabled: of(&key()).is_none(),
+            disabled: of(&key()).and_then(|(_, m)| m.whole()).is_none(),
             ..Button::default()
         }
         .draw(html);
+        if unit.is_none() {
+            given.with(|text| status_field(html, text));
+        }
         if problem.with(|p| !p.is_empty()) {
             problem.with(|p| html.node("p", "notice", p));
         }
     });
     let body: Draw = Arc::new(move |html: &mut Markup| {
-        let Some((_, map)) = of(&key()) else {
-            html.node("p", "empty", "The map of the device was not read yet.");
+        let (main, other) = (key(), beside.get());
+        let why = unit.and_then(|u| u.with(|u| refused(u).map(str::to_owned)));
+        if let Some(why) = why
+            .as_ref()
+            .filter(|_| main == "device" || other == "device")
+        {
+            html.node("p", "notice", why);
+        }
+        let Some((_, map)) = of(&main) else {
+            if why.is_none() {
+                html.node("p", "empty", "The map of the device was not read yet.");
+            }
             return;
         };
-        let beside = of(&beside.get()).map(|(_, m)| m);
+        let beside = of(&other).map(|(_, m)| m);
         let family = family();
-        if let (Some(unit), Some(family)) = (unit, family) {
-            let status = unit.with(|u| {
-                let bytes = (0..4).map(|at| u.raw(48, &format!("byte_{at}")));
-                bytes
-                    .map(|b| b.and_then(|b| u8::try_from(b).ok()))
-                    .collect::<Option<Vec<u8>>>()
-            });
-            if let Some(status) = status {
-                result(html, family, &status, &map);
-            }
+        let status = match unit {
+            Some(unit) => unit.with(alarm_bytes).map(|s| (s, "the status as read")),
+            None => given.with(|text| match (typed(text), text.trim().is_empty()) {
+                (Some(status), _) => Some((status, "the status bytes as given")),
+                (None, true) => captured().map(|s| (s, "command 48 of the input")),
+                (None, false) => {
+                    html.node(
+                        "p",
+                        "notice",
+                        "Give at least four status bytes as hex digits.",
+                    );
+                    None
+                }
+            }),
+        };
+        if let (Some(family), Some((status, words))) = (family, status) {
+            let words = format!("{words}, {},", shared::render::Spaced(&status));
+            result(html, &words, map.report(family, &status));
         }
-        matrix(html, family, &map, beside.as_ref());
-        for reading in ["R18", "R21"] {
-            if let Some(reading) = shared::hart::reading(reading) {
-                html.open("p", &[("class", "quiet")]);
-                html.node("code", "", reading.id)
-                    .text(" ")
-                    .text(reading.text);
-                html.close("p");
-            }
+        let sources = [preset(&main), preset(&other)];
+        let beside = beside.as_ref().map(|map| (map, sources[1]));
+        matrix(html, family, (&map, sources[0]), beside);
+        // How codes and indexes are read, that SI has no alarms, and what is open about an example.
+        let mut notes = vec!["R18", "R21"];
+        if family == Some(Family::Si) {
+            notes.push("R10");
+        }
+        for bit in sources.into_iter().flatten().flat_map(|p| p.bits) {
+            notes.extend(bit.reading.map(|r| r.id).filter(|id| !notes.contains(id)));
+        }
+        for reading in notes.into_iter().filter_map(shared::hart::reading) {
+            html.open("p", &[("class", "quiet")]);
+            html.node("code", "", reading.id)
+                .text(" ")
+                .text(reading.text)
+                .close("p");
         }
     });
     let on_act = Callback::new(move |act: Act| match act.name.as_str() {
         "map" => chosen.set(act.value),
         "beside" => beside.set(act.value),
         "family" => picked.set(Device::from_key(&act.value).and_then(Device::family)),
+        "status" => given.set(act.value),
         _ => {
-            if let Some((_, map)) = untrack(|| of(&key())) {
+            if let Some(map) = untrack(|| of(&key())).and_then(|(_, m)| m.whole()) {
                 let family = untrack(family);
                 save("valvescope-status-map.csv", &to_csv(family, &map));
             }
@@ -184,7 +228,7 @@ pub(super) fn MapView(
                 .and_then(|t| t.as_string());
             match text.as_deref().map(from_csv) {
                 Some(Ok(map)) => {
-                    file.set(Some((name, map)));
+                    file.set(Some((name, Known::all(&map))));
                     chosen.set("file".to_owned());
                     problem.set(String::new());
                 }
@@ -209,6 +253,24 @@ pub(super) fn MapView(
             <Drawn class="hart-map-body" draw=body/>
         </div>
     }
+}
+
+/// A field for the status bytes of a device that is not there.
+fn status_field(html: &mut Markup, text: &str) {
+    html.open("label", &[("class", "choice")]);
+    html.node("span", "", "Status bytes").open(
+        "input",
+        &[
+            ("type", "text"),
+            ("data-act", "status"),
+            ("data-testid", "hart-map-status"),
+            ("data-value", text),
+            ("value", text),
+            ("placeholder", "as 02 00 02 00"),
+            ("aria-label", "Status bytes 0 on of command 48, hexadecimal"),
+        ],
+    );
+    html.close("label");
 }
 
 /// The file that was chosen in a field, which is emptied so that the same can be chosen again.

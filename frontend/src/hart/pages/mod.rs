@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use leptos::prelude::*;
 
+use super::markup::overview;
 use super::state::plan::{TABS, tab};
 use super::store::Store;
 use crate::components::drawn::{Draw, Drawn};
@@ -82,7 +83,12 @@ fn Device() -> impl IntoView {
         "traffic" => view! { <traffic::TrafficPage only=true/> }.into_any(),
         _ => view! { <device::OverviewPage/> }.into_any(),
     });
+    // Whatever is shown of a device, nobody may overlook that it does not follow its loop.
+    let forced: Draw = Arc::new(move |html: &mut Markup| {
+        store.unit.with(|unit| overview::forced(html, unit));
+    });
     view! {
+        <Drawn class="hart-forced-all" role="status" draw=forced/>
         <Drawn class="tabs" role="tablist" label="HART device" draw=tabs/>
         {body}
     }

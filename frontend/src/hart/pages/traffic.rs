@@ -4,26 +4,21 @@ use std::sync::Arc;
 
 use leptos::prelude::*;
 use shared::capture::Micros;
-use shared::decode::Context;
 use shared::device::{Device, Family};
 use shared::session::Session;
 use shared::tree::Decoded;
 
-use crate::browser::{Narrow, save};
-use crate::components::drawn::{Act, Draw, Drawn};
-use crate::components::frame_detail::{FrameDetail, Selected};
+use crate::components::drawn::{Act, Draw};
 use crate::components::icon::Glyph;
-use crate::components::windowed::{DrawRow, Windowed};
+use crate::components::traffic_panes::{TrafficPanes, draw_row, end, pause, save_frames};
+use crate::components::windowed::DrawRow;
 use crate::erased::memo;
-use crate::format::{clock, count, millis};
-use crate::hart::state::site::is_about;
-use crate::hart::state::unit::raw_of;
+use crate::format::{clock, count};
+use crate::hart::state::site::{body, is_about};
+use crate::hart::state::unit::Unit;
 use crate::hart::store::Store;
 use crate::markup::Markup;
 use crate::markup::control::{Button, tick};
-use crate::markup::frame::{Beside, head, row};
-use crate::state::summary::summary;
-use crate::state::traffic::export;
 use crate::state::work::Shown;
 
 /// The frames of the bus; only those of the device on its own page.
@@ -33,13 +28,11 @@ pub(super) fn TrafficPage(
     only: bool,
 ) -> impl IntoView {
     let store = Store::get();
-    let Narrow(narrow) = expect_context();
     let frozen = RwSignal::new(None::<Session>);
     let from = RwSignal::new(0_u32);
     let problems = RwSignal::new(false);
     let cursor = RwSignal::new(None::<usize>);
     let in_detail = RwSignal::new(false);
-    let selected = RwSignal::new(None);
 
     let with = move |act: &mut dyn FnMut(&Session)| {
         frozen.with(|frozen| match frozen {
@@ -64,15 +57,8 @@ pub(super) fn TrafficPage(
         let (from, problems) = (from.get(), problems.get());
         let polling = store
             .plant
-            .with(|p| store.tag.with(|t| p.device(t).map_or(0, |d| d.polling)));
-        let long = store.unit.with_untracked(|unit| {
-            let good = unit.good(0)?;
-            let (kind, id) = (
-                raw_of(&good.shown, "expanded_type")? & 0x3FFF,
-                raw_of(&good.shown, "device_id")?,
-            );
-            Some(format!("{kind:04X}{id:06X}"))
-        });
+            .with(|p| store.tag.with(|t| p.device(t).and_then(|d| d.polling)));
+        let own = store.unit.with_untracked(Unit::address);
         let mut found = Vec::new();
         with(&mut |session| {
             let all = session.first().max(from)..session.len();
@@ -83,7 +69,7 @@ pub(super) fn TrafficPage(
                         .is_some_and(|f| f.is_noise() || f.marks.is_damaged());
                     let mine = || {
                         let bytes = session.bytes(*at).unwrap_or(&[]);
-                        is_about(bytes, polling, long.as_deref())
+                        is_about(body(session.framing(), bytes), polling, own)
                     };
                     (!problems || bad) && (!only || bad || mine())
                 })
@@ -102,20 +88,8 @@ pub(super) fn TrafficPage(
             return;
         };
         with(&mut |session| {
-            let context = Context {
-                framing: session.framing(),
-                device: device(),
-            };
-            let summary = scratch
-                .try_update_value(|s| summary(session, index, &context, s))
-                .flatten();
-            if let Some(summary) = summary {
-                let beside = Beside {
-                    place: time(session.at(index)),
-                    latency: Some(latency(session, index).map_or_else(String::new, millis)),
-                };
-                row(html, index, &summary, &beside);
-            }
+            let place = time(session.at(index));
+            draw_row(html, session, index, device(), place, scratch);
         });
     });
     let shown = memo(move || {
@@ -134,15 +108,6 @@ pub(super) fn TrafficPage(
     });
     let go = Callback::new(move |frame: u32| {
         cursor.set(frames.with_untracked(|f| f.binary_search(&frame).ok()));
-    });
-    let on_open = Callback::new(move |(_, target): (usize, Option<web_sys::Element>)| {
-        let pair = target
-            .and_then(|t| t.closest("[data-pair]").ok().flatten())
-            .and_then(|t| t.get_attribute("data-pair")?.parse().ok());
-        match pair {
-            Some(pair) => go.run(pair),
-            None => in_detail.set(true),
-        }
     });
     let tools: Draw = Arc::new(move |html: &mut Markup| {
         let paused = frozen.with(Option::is_some);
@@ -191,65 +156,22 @@ pub(super) fn TrafficPage(
         }
     });
     let on_act = Callback::new(move |act: Act| match act.name.as_str() {
-        "pause" => {
-            let mut copy = None;
-            if frozen.with_untracked(Option::is_none) {
-                untrack(|| with(&mut |session| copy = Some(session.clone())));
-            }
-            frozen.set(copy);
-        }
-        "clear" => {
-            let mut end = 0;
-            untrack(|| with(&mut |session| end = session.len()));
-            from.set(end);
-        }
-        "save" => {
-            let mut text = String::new();
-            let listed = frames.get_untracked();
-            untrack(|| with(&mut |session| text = export(session, &listed)));
-            save(&format!("{}.hex", store.bus.get_untracked()), &text);
-        }
+        "pause" => pause(frozen, &with),
+        "clear" => from.set(end(&with)),
+        "save" => save_frames(&store.bus.get_untracked(), &frames.get_untracked(), &with),
         _ => problems.set(!act.value.is_empty()),
     });
     view! {
-        <div class="traffic" class:show-detail=move || narrow.get() && in_detail.get()>
-            <Drawn class="toolbar" draw=tools on_act=on_act/>
-            <div class="panes">
-                <section class="pane list-pane" aria-label="Frames">
-                    <div
-                        class="frame-row frame-head with-latency"
-                        aria-hidden="true"
-                        inner_html=head("Time", true)
-                    ></div>
-                    <Windowed
-                        label="Frames"
-                        count=Signal::derive(move || frames.with(|f| f.len()))
-                        row_height=Signal::derive(move || if narrow.get() { 56 } else { 28 })
-                        cursor=cursor
-                        draw=draw
-                        follow=true
-                        on_open=on_open
-                        testid="traffic-list"
-                    />
-                </section>
-                <section class="pane detail-pane" aria-label="Frame">
-                    <button class="button back" on:click=move |_| in_detail.set(false)>
-                        "Back to the frames"
-                    </button>
-                    <FrameDetail
-                        shown=shown
-                        selected=Selected(selected)
-                        aside=aside
-                        on_pair=go
-                    />
-                </section>
-            </div>
-        </div>
+        <TrafficPanes
+            frames=frames
+            cursor=cursor
+            draw=draw
+            shown=shown
+            aside=aside
+            go=go
+            in_detail=in_detail
+            tools=tools
+            on_act=on_act
+        />
     }
-}
-
-/// Time from the request to its answer.
-fn latency(session: &Session, index: u32) -> Option<u64> {
-    let pair = session.frame(index)?.pair().filter(|pair| *pair < index)?;
-    Some(session.at(index)?.since(session.at(pair)?))
 }

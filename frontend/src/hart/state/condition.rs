@@ -1,6 +1,10 @@
 //! What a device says about its state, in words: forced and simulated modes, NE 107, travel.
 
 use shared::device::Family;
+use shared::hart::model::Bit;
+use shared::hart::ne107::ALARM_BYTES;
+use shared::hart::{DEVICE_STATUS, additional};
+use shared::tree::Name;
 use shared::value::Value;
 
 use super::plan;
@@ -120,6 +124,39 @@ pub fn ne107(unit: &Unit) -> Ne107 {
     Ne107::Signs(signs)
 }
 
+/// Bytes 0 to 3 of command 48, which hold the alarms.
+#[must_use]
+pub fn alarm_bytes(unit: &Unit) -> Option<Vec<u8>> {
+    let bytes = (0..ALARM_BYTES).map(|at| unit.raw(48, &format!("byte_{at}")));
+    bytes.map(|b| u8::try_from(b?).ok()).collect()
+}
+
+/// The bits that are set: those of the device status as it came last, then those of command 48.
+#[must_use]
+pub fn set_bits(unit: &Unit) -> Vec<&'static Bit> {
+    let status = unit.status.map_or(0, |(status, _)| status);
+    let own = DEVICE_STATUS.bits.iter();
+    let mut all: Vec<&Bit> = own.filter(|b| status >> b.bit & 1 != 0).collect();
+    if let Some(good) = unit.good(48) {
+        let fields = good.shown.decoded.fields().iter();
+        let set = fields.filter_map(|f| match (f.name, f.value) {
+            (Name::HartBit(bit), Value::Bit { on: true, .. }) => Some(bit),
+            _ => None,
+        });
+        // The device status of that answer may be old by now.
+        all.extend(set.filter(|b| !DEVICE_STATUS.bits.iter().any(|own| core::ptr::eq(own, *b))));
+    }
+    all
+}
+
+/// True if one of the bits is an alarm that a status map can give a category.
+#[must_use]
+pub fn can_have_category(family: Option<Family>, bits: &[&'static Bit]) -> bool {
+    let own = (0..ALARM_BYTES).filter_map(|byte| additional(family?, byte));
+    let mut own = own.flat_map(|byte| byte.bits);
+    own.any(|own| own.alarm && bits.iter().any(|bit| core::ptr::eq(own, *bit)))
+}
+
 /// Which way the valve goes, and whether it stands at its limits: close, open.
 #[must_use]
 pub fn travel(unit: &Unit) -> (Travel, bool, bool) {
@@ -145,8 +182,7 @@ pub const fn third(family: Option<Family>) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hart::state::unit::tests::{STATUS, unit};
-    use shared::hart::additional;
+    use crate::hart::state::unit::tests::{STATUS, hear, poll, unit};
 
     /// The bits that the picture needs are the same in tables 7 to 11.
     #[test]
@@ -173,6 +209,25 @@ mod tests {
         known.family = Some(Family::Cva);
         assert_eq!(ne107(&unit(&[])), Ne107::Unread);
         assert_eq!(forced(&known), Vec::<String>::new());
+    }
+
+    /// Device status 90 came with command 48, and 08 later: table 4, bits 7 and 4, then 3.
+    #[test]
+    fn the_latest_device_status_counts() {
+        let mut known = unit(&[(48, STATUS.0, STATUS.1)]);
+        let keys = |unit: &Unit| set_bits(unit).iter().map(|b| b.key).collect::<Vec<_>>();
+        assert!(keys(&known).contains(&"malfunction"));
+        assert!(can_have_category(known.family, &set_bits(&known)));
+        hear(&mut known, 3, 0x08, &poll(50.0), 1);
+        let keys = keys(&known);
+        assert!(!keys.contains(&"malfunction") && !keys.contains(&"more_status_available"));
+        assert!(keys.contains(&"loop_current_fixed") && keys.contains(&"local_control_fault"));
+        assert_eq!(alarm_bytes(&known), Some(vec![2, 0, 2, 0]));
+        let mut unread = unit(&[]);
+        hear(&mut unread, 3, 0x80, &poll(50.0), 1);
+        let bits = set_bits(&unread);
+        assert_eq!(bits.len(), 1);
+        assert!(!can_have_category(unread.family, &bits));
     }
 
     /// Control mode 1 by the worked frame of command 133.

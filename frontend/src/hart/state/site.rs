@@ -2,7 +2,8 @@
 
 use shared::device::{Device, Family};
 use shared::frame::Framing;
-use shared::hart::frame::{Head, preamble};
+use shared::hart::frame::{Address, Head, ROTORK, preamble};
+use shared::hart::link::{Identity, LAST_POLLING};
 use shared::proto::{HartNews, ToPage};
 use shared::session::Session;
 
@@ -18,8 +19,8 @@ pub struct Known {
     pub family: Option<Family>,
     /// Its bus.
     pub bus: String,
-    /// Its polling address.
-    pub polling: u8,
+    /// Its polling address; `None` if it is found by its tag or its long address.
+    pub polling: Option<u8>,
 }
 
 /// Buses and devices of the configuration.
@@ -49,7 +50,7 @@ impl Plant {
                     tag: d.tag.clone(),
                     family: Device::from_key(&d.kind).and_then(Device::family),
                     bus: d.bus.clone(),
-                    polling: d.unit,
+                    polling: Some(d.unit).filter(|unit| *unit <= LAST_POLLING),
                 })
                 .collect(),
         })
@@ -59,6 +60,13 @@ impl Plant {
     #[must_use]
     pub fn device(&self, tag: &str) -> Option<&Known> {
         self.devices.iter().find(|d| d.tag == tag)
+    }
+
+    /// The device of a bus with this polling address.
+    #[must_use]
+    pub fn polled(&self, bus: &str, polling: u8) -> Option<&Known> {
+        let mut devices = self.devices.iter();
+        devices.find(|d| d.bus == bus && d.polling == Some(polling))
     }
 
     /// The framing of a bus.
@@ -139,6 +147,8 @@ pub struct Found {
     pub polling: Option<u8>,
     /// Its answer, decoded.
     pub shown: Shown,
+    /// Who it is.
+    pub identity: Option<Identity>,
     /// When it came.
     pub at_us: u64,
 }
@@ -151,20 +161,46 @@ impl Found {
         let mut session = Session::new(Framing::Hart);
         session.push(&Capture::of(&bytes_of(response)));
         session.finish();
+        let shown = Shown::of(&session, 0, Device::None)?;
         Some(Self {
             polling,
-            shown: Shown::of(&session, 0, Device::None)?,
+            identity: super::unit::identity(&shown),
+            shown,
             at_us,
         })
     }
 
-    /// Type and device id as ten digits, as they stand in a long address.
+    /// Where its commands go: the ten digits of its long address, of whatever revision it is.
     #[must_use]
     pub fn address(&self) -> Option<String> {
-        let raw = |key| super::unit::raw_of(&self.shown, key);
-        let id = raw("device_id")?;
-        let kind = raw("expanded_type")? & 0x3FFF;
-        Some(format!("{kind:04X}{id:06X}"))
+        Some(self.identity.as_ref()?.address.to_string())
+    }
+
+    /// What it is, and the digits that say so: manufacturer and device type.
+    ///
+    /// Source: PUB092-003-00, appendix 3: manufacturer 6Eh and device type DDh.
+    #[must_use]
+    pub fn kind(&self) -> Option<(String, String)> {
+        let identity = self.identity.as_ref()?;
+        let digits = format!("type {:04X}", identity.expanded_type);
+        let name = if identity.expanded_type == ROTORK {
+            "Rotork actuator".to_owned()
+        } else {
+            let maker = super::unit::find(&self.shown, "manufacturer");
+            maker.map_or_else(String::new, |(_, f)| self.shown.decoded.bare_text(f))
+        };
+        Some((name, digits))
+    }
+
+    /// The device of the configuration that it is: the one at its polling address, or at that of
+    /// another answer of the same device.
+    #[must_use]
+    pub fn known<'p>(&self, all: &[Self], plant: &'p Plant, bus: &str) -> Option<&'p Known> {
+        let same = all
+            .iter()
+            .filter(|one| self.identity.is_some() && one.address() == self.address());
+        let mut polling = same.chain([self]).filter_map(|one| one.polling);
+        polling.find_map(|polling| plant.polled(bus, polling))
     }
 }
 
@@ -210,21 +246,29 @@ impl Link {
     }
 }
 
-/// The device that a frame is about: by its polling address, or by the long one that its answers to
-/// command 0 have shown.
+/// A frame from its delimiter on: behind the preamble, or behind the header of HART-IP.
 #[must_use]
-pub fn is_about(frame: &[u8], polling: u8, long: Option<&str>) -> bool {
-    use shared::hart::frame::Address;
-    let body = frame.get(preamble(frame)..).unwrap_or(&[]);
-    Head::of(body).is_some_and(|head| match head.address {
-        Address::Short(short) => short == polling,
-        address => long == Some(address.to_string().as_str()),
-    })
+pub fn body(framing: Framing, frame: &[u8]) -> &[u8] {
+    let skip = match framing {
+        Framing::HartIp => shared::hart::ip::HEADER,
+        _ => preamble(frame),
+    };
+    frame.get(skip..).unwrap_or(&[])
+}
+
+/// True for a frame, from its delimiter on, about a device: by its polling address, if it has one,
+/// or by the address that its answers to command 0 have shown.
+#[must_use]
+pub fn is_about(body: &[u8], polling: Option<u8>, own: Option<Address>) -> bool {
+    let address = Head::of(body).map(|head| head.address);
+    let short = polling.map(Address::Short);
+    address.is_some_and(|address| [short, own].contains(&Some(address)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hart::state::unit::tests::identity_of;
 
     /// The worked answer R2 to command 0.
     const IDENTITY: &str = "068000180020FE6EDD05070201080001234505050007 00006E006E019B";
@@ -233,7 +277,70 @@ mod tests {
     fn a_found_device_has_its_address() {
         let found = Found::new(Some(0), &IDENTITY.replace(' ', ""), 1).unwrap();
         assert_eq!(found.address().as_deref(), Some("2EDD012345"));
+        let (name, digits) = found.kind().unwrap();
+        assert_eq!(
+            (name.as_str(), digits.as_str()),
+            ("Rotork actuator", "type 6EDD")
+        );
         assert_eq!(Found::new(None, "", 1), None);
+    }
+
+    /// What answers command 0 at a short address.
+    fn found(polling: Option<u8>, revision: u8, maker: u8) -> Found {
+        let mut data = identity_of(revision, 1);
+        data[1] = maker;
+        let data = [&[0, 0], &data[..]].concat();
+        let frame = shared::hart::frame::seal(0x06, &[0x80], 0, &data);
+        Found::new(polling, &shared::render::hex(&frame), 1).unwrap()
+    }
+
+    #[test]
+    fn older_revisions_have_address_and_type() {
+        for revision in [5, 6] {
+            let one = found(Some(0), revision, 0x6E);
+            assert_eq!(one.address().as_deref(), Some("2EDD012345"));
+            assert_eq!(one.kind().unwrap().0, "Rotork actuator");
+            // 26 (1Ah) is ABB; six bits of it stand in the address.
+            let other = found(Some(0), revision, 0x1A);
+            assert_eq!(other.address().as_deref(), Some("1ADD012345"));
+            let (name, digits) = other.kind().unwrap();
+            assert!(name.contains("ABB"), "{name}");
+            assert_eq!(digits, "type 1ADD");
+        }
+    }
+
+    /// Three devices on a line: at address 0, found by a tag, and on another line.
+    fn plant() -> Plant {
+        let device = |tag: &str, bus: &str, polling| Known {
+            tag: tag.into(),
+            family: Some(Family::Iq),
+            bus: bus.into(),
+            polling,
+        };
+        Plant {
+            buses: Vec::new(),
+            devices: vec![
+                device("FV-3", "other", Some(0)),
+                device("FV-2", "loop", None),
+                device("FV-1", "loop", Some(0)),
+            ],
+        }
+    }
+
+    #[test]
+    fn found_devices_are_those_of_the_configuration() {
+        let plant = plant();
+        let tag = |one: &Found, all: &[Found]| {
+            one.known(all, &plant, "loop")
+                .map(|known| known.tag.clone())
+        };
+        let (first, second) = (found(Some(0), 7, 0x6E), found(Some(1), 7, 0x1A));
+        assert_eq!(tag(&first, &[]).as_deref(), Some("FV-1"));
+        assert_eq!(tag(&second, &[]), None);
+        // Found by its tag: the same device answered at 0 before.
+        let named = found(None, 7, 0x6E);
+        assert_eq!(tag(&named, &[]), None);
+        assert_eq!(tag(&named, &[second, first]).as_deref(), Some("FV-1"));
     }
 
     #[test]
@@ -262,9 +369,18 @@ mod tests {
     #[test]
     fn frames_are_told_by_either_address() {
         let poll = [0x82, 0xAE, 0xDD, 1, 0x23, 0x45, 3, 0, 0x95];
-        assert!(is_about(&poll, 0, Some("2EDD012345")));
-        assert!(!is_about(&poll, 0, None));
-        assert!(is_about(&[0xFF, 0xFF, 0x02, 0x80, 0, 0, 0x82], 0, None));
-        assert!(!is_about(&[], 0, None));
+        let own = Some(Address::Long(0x2EDD, 0x01_2345));
+        assert!(is_about(&poll, Some(0), own));
+        assert!(!is_about(&poll, Some(0), None));
+        let short = [0xFF, 0xFF, 0x02, 0x80, 0, 0, 0x82];
+        let short = body(Framing::Hart, &short);
+        assert!(is_about(short, Some(0), None));
+        // A device that is found by its tag has no polling address that we know.
+        assert!(!is_about(short, None, own));
+        // Eight bytes of HART-IP: version, type, id, status, sequence, length of all.
+        let header = [1, 0, 3, 0, 0, 2, 0, 17];
+        let wrapped = [&header, &poll[..]].concat();
+        assert!(is_about(body(Framing::HartIp, &wrapped), Some(0), own));
+        assert!(!is_about(&[], Some(0), None) && !is_about(&[], None, None));
     }
 }

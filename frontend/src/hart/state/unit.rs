@@ -1,5 +1,8 @@
 //! One device: the exchanges with it, and what they say.
 
+#[cfg(test)]
+pub(crate) mod tests;
+
 use std::collections::BTreeMap;
 use std::collections::VecDeque;
 
@@ -7,6 +10,8 @@ use shared::capture::{Capture, Direction};
 use shared::device::{Device, Family};
 use shared::frame::Framing;
 use shared::hart::class;
+use shared::hart::frame::Address;
+use shared::hart::link::{Answer, Identity};
 use shared::hart::model::Class;
 use shared::proto::{HartCommand, Outcome};
 use shared::session::Session;
@@ -18,6 +23,13 @@ use crate::state::work::Shown;
 
 /// Points of the trend that are kept: half an hour at two a second.
 const TREND: usize = 3600;
+
+/// Microseconds after which an answer does not tell of now any more.
+const FRESH: u64 = 15_000_000;
+/// Bit of the device status: the configuration was changed.
+const CONFIGURED: u8 = 0x40;
+/// Key of the counter of changes of the configuration.
+const COUNTER: &str = "change_counter";
 
 /// A command with its data, as asked: what tells one reading from another.
 pub type Key = (u16, String);
@@ -101,8 +113,14 @@ pub struct Unit {
     pub answered_us: Option<u64>,
     /// How the last exchange ended, and in words.
     pub last: Option<(Outcome, String)>,
+    /// True while the connection is gone, until something is heard again.
+    pub away: bool,
     /// The last device status byte with its time.
     pub status: Option<(u8, u64)>,
+    /// When its mode may have changed: the device status did, or the primary variable came or went.
+    pub moded_us: u64,
+    /// When its configuration changed last, by the device status or the counter of command 0.
+    pub configured_us: u64,
     /// What was asked once and is not over.
     pending: Vec<Key>,
 }
@@ -119,7 +137,10 @@ impl Unit {
             trend: VecDeque::new(),
             answered_us: None,
             last: None,
+            away: false,
             status: None,
+            moded_us: 0,
+            configured_us: 0,
             pending: Vec::new(),
         }
     }
@@ -139,6 +160,7 @@ impl Unit {
         (at_us, took_us, tries): (u64, u64, u8),
     ) {
         self.last = Some((outcome, text.to_owned()));
+        self.away = false;
         let device = self.family.map_or(Device::None, Device::Rotork);
         let session = exchange(request, response);
         let asked = Shown::of(&session, 0, device);
@@ -153,10 +175,17 @@ impl Unit {
         if let Some(answer) = &answer {
             self.answered_us = Some(at_us);
             if let Some(status) = raw_of(answer, "device_status") {
-                self.status = Some((u8::try_from(status).unwrap_or(0), at_us));
+                let status = u8::try_from(status).unwrap_or(0);
+                let moved = self.status.map_or(0, |(before, _)| before ^ status);
+                self.note(moved != 0, moved & CONFIGURED != 0, at_us);
+                self.status = Some((status, at_us));
             }
         }
         let refused = answer.as_ref().and_then(refusal);
+        if let (0, Some(counter)) = (command, answer.as_ref().and_then(counter)) {
+            let before = self.raw(0, COUNTER).is_some_and(|before| before != counter);
+            self.note(false, before, at_us);
+        }
         let reading = self.readings.entry(key).or_default();
         match (answer, refused) {
             (Some(shown), None) if outcome == Outcome::Ok => {
@@ -167,14 +196,18 @@ impl Unit {
                     took_us,
                     tries,
                 };
-                if command == 3 {
-                    self.trend.push_back(moment(&good));
+                let moment = (command == 3).then(|| moment(&good));
+                reading.good = Some(good);
+                reading.bad = None;
+                if let Some(moment) = moment {
+                    let has = |m: &Moment| m.values[1].is_some();
+                    let came = self.trend.back().is_some_and(|b| has(b) != has(&moment));
+                    self.note(came, false, at_us);
+                    self.trend.push_back(moment);
                     if self.trend.len() > TREND {
                         self.trend.pop_front();
                     }
                 }
-                reading.good = Some(good);
-                reading.bad = None;
             }
             (_, refused) => {
                 reading.bad = Some(Bad {
@@ -184,6 +217,21 @@ impl Unit {
                 });
             }
         }
+    }
+
+    fn note(&mut self, mode: bool, configuration: bool, at_us: u64) {
+        if mode {
+            self.moded_us = at_us;
+        }
+        if configuration {
+            self.configured_us = at_us;
+        }
+    }
+
+    /// Where its commands go, by its answer to command 0, of whatever revision.
+    #[must_use]
+    pub fn address(&self) -> Option<Address> {
+        Some(identity(&self.good(0)?.shown)?.address)
     }
 
     /// What is known of a command.
@@ -229,6 +277,16 @@ impl Unit {
     /// The connection is gone: what was told stays, and grows old.
     pub fn lost(&mut self) {
         self.last = None;
+        self.away = true;
+    }
+
+    /// True for an answer that tells of now: the last of its command, and not older than a
+    /// quarter of a minute.
+    #[must_use]
+    pub fn is_fresh(&self, command: u16, now_us: u64) -> bool {
+        let reading = self.reading(&plain(command)).filter(|r| r.bad.is_none());
+        let good = reading.and_then(|r| r.good.as_ref()).filter(|_| !self.away);
+        good.is_some_and(|good| now_us.saturating_sub(good.at_us) <= FRESH)
     }
 }
 
@@ -279,6 +337,17 @@ fn refusal(shown: &Shown) -> Option<String> {
     (class(code).0 == Class::Error).then(|| format!("Refused: {}.", decoded.bare_text(field)))
 }
 
+/// Who answered: from the answer to command 0, 11 or 21, from the delimiter to the check byte.
+#[must_use]
+pub fn identity(shown: &Shown) -> Option<Identity> {
+    Identity::of(&Answer::of(shown.decoded.bytes())?)
+}
+
+/// The counter of changes in an answer to command 0; HART 5 has none.
+fn counter(shown: &Shown) -> Option<u32> {
+    raw_of(shown, COUNTER)
+}
+
 /// A field of the protocol or of the data, by its key.
 #[must_use]
 pub fn find<'s>(shown: &'s Shown, key: &str) -> Option<(FieldId, &'s Field)> {
@@ -315,95 +384,5 @@ fn moment(good: &Good) -> Moment {
                 _ => None,
             }
         }),
-    }
-}
-
-#[cfg(test)]
-pub(crate) mod tests {
-    use super::*;
-    use crate::state::absorb::bytes_of;
-
-    /// The worked exchange R5, R6: 12 mA, demand 50 %, position 49.5 %, torque 12.5 %, no fourth.
-    pub(crate) const POLL: (&str, &str) = (
-        "82AEDD012345030095",
-        "86AEDD012345031A0000414000003942480000394246000039414800003 97FA0000052",
-    );
-    /// The worked exchange R9, R10 of command 48.
-    pub(crate) const STATUS: (&str, &str) = (
-        "82AEDD0123453000A6",
-        "86AEDD012345300B009002000200A440080000D5",
-    );
-
-    pub(crate) fn hex(text: &str) -> Vec<u8> {
-        bytes_of(&text.replace(' ', ""))
-    }
-
-    pub(crate) fn unit(exchanges: &[(u16, &str, &str)]) -> Unit {
-        let mut unit = Unit::new("FV-1".into(), Some(Family::Iq), "loop".into());
-        for (command, request, response) in exchanges {
-            let (request, response) = (hex(request), hex(response));
-            unit.take(&request, &response, *command, (Outcome::Ok, ""), (7, 2, 1));
-        }
-        unit
-    }
-
-    #[test]
-    fn values_come_from_the_bytes() {
-        let unit = unit(&[(3, POLL.0, POLL.1), (48, STATUS.0, STATUS.1)]);
-        assert_eq!(unit.text(3, "pv").as_deref(), Some("50 %"));
-        assert_eq!(unit.text(3, "sv").as_deref(), Some("49.5 %"));
-        assert_eq!(unit.text(3, "loop_current").as_deref(), Some("12 mA"));
-        assert_eq!(unit.raw(48, "byte_4"), Some(0xA4));
-        assert_eq!(unit.status, Some((0x90, 7)));
-        let moment = &unit.trend[0];
-        assert_eq!(moment.values[2], Some((49.5, "49.5".into())));
-        assert_eq!(unit.reading(&plain(13)), None, "not read is not there");
-        assert!(unit.has(133) && !unit.has(129) && !unit.has(33));
-    }
-
-    #[test]
-    fn a_refusal_keeps_the_last_value_and_says_why() {
-        // The worked answer R28: command 35, code 64.
-        let mut unit = unit(&[(3, POLL.0, POLL.1)]);
-        let refused = hex("86AEDD012345230240 40B3");
-        unit.take(
-            &hex("82AEDD0123452300B5"),
-            &refused,
-            35,
-            (Outcome::Ok, ""),
-            (9, 1, 1),
-        );
-        let reading = unit.reading(&plain(35)).unwrap();
-        assert!(reading.good.is_none());
-        let why = &reading.bad.as_ref().unwrap().text;
-        assert!(why.contains("Command not implemented"), "{why}");
-        let poll = hex(POLL.0);
-        unit.take(&poll, &[], 3, (Outcome::Silence, "no answer"), (11, 1, 4));
-        let reading = unit.reading(&plain(3)).unwrap();
-        assert!(reading.good.is_some(), "the last value stays");
-        assert_eq!(reading.bad.as_ref().unwrap().outcome, Outcome::Silence);
-        assert_eq!(unit.answered_us, Some(9));
-    }
-
-    #[test]
-    fn what_never_went_out_is_known_as_asked() {
-        let mut unit = unit(&[]);
-        let key = (523, "0040".to_owned());
-        unit.ask(core::slice::from_ref(&key));
-        unit.take(&[], &[], 523, (Outcome::Down, "no line"), (1, 0, 0));
-        let bad = unit.reading(&key).unwrap().bad.as_ref().unwrap();
-        assert_eq!(bad.text, "no line");
-    }
-
-    #[test]
-    fn extended_commands_are_told_apart_by_their_data() {
-        let unit = unit(&[(
-            523,
-            "82AEDD0123451F04020B0040C4",
-            "86AEDD0123451F260000020B0040 00000000304000510405000005030000000000000000000000000000000000 00C4",
-        )]);
-        let key = (523, "0040".to_owned());
-        let reading = unit.reading(&key).unwrap();
-        assert!(reading.good.is_some(), "{:?}", unit.readings.keys());
     }
 }

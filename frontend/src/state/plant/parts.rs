@@ -7,6 +7,7 @@ use shared::proto::{Bus, DeviceInfo, LineState, Outcome};
 use shared::session::Session;
 
 use crate::state::job::Job;
+use crate::state::overview::{Figure, Overview};
 
 /// A bus as the page knows it.
 #[derive(Clone, Debug)]
@@ -54,6 +55,8 @@ pub struct DeviceState {
     pub device: Device,
     /// Its values.
     pub image: Image,
+    /// The position of a HART device, as it was polled for the list last.
+    pub position: Option<Figure>,
     /// How its last read ended.
     pub outcome: Option<Outcome>,
     /// The same in words.
@@ -72,12 +75,21 @@ impl DeviceState {
             device: Device::from_key(&info.kind).unwrap_or_default(),
             info,
             image: Image::new(),
+            position: None,
             outcome: None,
             text: String::new(),
             last_ok: None,
             latency: None,
             job: None,
         }
+    }
+
+    /// What it says about itself.
+    #[must_use]
+    pub fn overview(&self) -> Overview {
+        let seen = Overview::of(self.device, &self.image);
+        let position = seen.position.or_else(|| self.position.clone());
+        Overview { position, ..seen }
     }
 
     /// True for a unit of a DDC-100 network.

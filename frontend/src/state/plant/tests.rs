@@ -201,3 +201,32 @@ fn the_clock_goes_on_between_ticks() {
     assert_eq!(plant.now(1500.0), 6_500_000);
     assert_eq!(plant.wall_ms(5_000_000), 1_000_000);
 }
+
+/// Polls of a HART device for the list: the worked answer R6, silence, then no value.
+#[test]
+fn the_position_of_a_hart_device_is_kept() {
+    let mut plant = plant();
+    let mut hear = |command: u16, response: &str| {
+        let news = shared::proto::HartNews::Exchange {
+            id: None,
+            device: "XV-1".into(),
+            command,
+            request: "82AEDD012345030095".into(),
+            response: response.into(),
+            outcome: Outcome::Ok,
+            text: String::new(),
+            at_us: 9,
+            took_us: 2,
+            tries: 1,
+        };
+        let changed = plant.hart(&news.to_text());
+        let position = plant.device("XV-1").unwrap().overview().position;
+        (changed, position.map(|p| p.text))
+    };
+    let answer = "86AEDD012345031A000041400000394248000039424600003941480000397FA0000052";
+    assert_eq!(hear(48, answer), (false, None));
+    assert_eq!(hear(3, answer), (true, Some("49.5".into())));
+    assert_eq!(hear(3, ""), (false, Some("49.5".into())));
+    let none = answer.replace("3942460000", "397FA00000");
+    assert_eq!(hear(3, &none), (true, None));
+}

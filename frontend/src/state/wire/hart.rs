@@ -3,6 +3,7 @@
 use shared::proto::{HART_PREFIX, HartAsk, HartCommand, HartNews};
 
 use super::{Fields, OUTCOMES, Writer};
+use crate::state::absorb::bytes_of;
 use crate::state::json::{Json, quoted};
 
 /// Reads news of the backend; `None` if it is something else.
@@ -86,6 +87,18 @@ pub fn watch_in_list(device: &str, on: bool) -> String {
     out.push_str(&LIST_MS.to_string());
     out.push_str("}}}");
     out
+}
+
+/// What the list of all devices takes of news: the tag, the answer to command 3, and when it came.
+#[must_use]
+pub fn polled(text: &str) -> Option<(String, Vec<u8>, u64)> {
+    let json = Json::parse(text)?;
+    let (kind, body) = json.only()?.1.only()?;
+    let fields = Fields { kind, body };
+    let is = kind == "exchange" && fields.number("command") == Ok(3);
+    let answer = fields.text("response").ok().filter(|_| is)?;
+    let tag = fields.text("device").ok()?;
+    Some((tag, bytes_of(&answer), fields.number("at_us").ok()?))
 }
 
 /// Writes what the program asks.
