@@ -16,7 +16,7 @@ use shared::frame::Framing;
 use shared::frame::check::crc_holds;
 use shared::map::row::Model;
 use shared::pdu::length::{self, Length};
-use shared::sim::{Dop, DopSetup, Icon3000, Programme};
+use shared::sim::{Dop, DopSetup, Fault, Icon3000, Programme};
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -32,6 +32,10 @@ const IDLE: Duration = Duration::from_secs(300);
 /// Unit address by which a device on Modbus TCP is meant whatever its own address is.
 /// Source: Modbus Messaging on TCP/IP V1.0b, section 4.4.1.2.
 const DIRECT: u8 = 255;
+/// Longest frame of Modbus RTU (Modbus over Serial Line V1.02, section 2.5.1).
+const LONGEST: usize = 256;
+/// What is heard without a silence is kept up to here.
+const KEPT: usize = 4096;
 /// Exception "gateway target device failed to respond".
 const NO_TARGET: u8 = 0x0B;
 
@@ -60,6 +64,13 @@ impl Actuator {
     fn overheard(&mut self, sound: bool) {
         match self {
             Self::Icon(icon) => icon.overheard(sound),
+            Self::Dop(_) => {}
+        }
+    }
+
+    fn overrun(&mut self) {
+        match self {
+            Self::Icon(icon) => icon.overrun(),
             Self::Dop(_) => {}
         }
     }
@@ -172,11 +183,12 @@ impl Actuators {
         let mut answer = None;
         for (address, device) in units.iter_mut() {
             device.advance(now, wall);
-            device.overheard(true);
             if unit == 0 {
                 device.broadcast(pdu);
             } else if *address == unit {
                 answer = device.answer(pdu);
+            } else {
+                device.overheard(true);
             }
         }
         answer
@@ -186,6 +198,24 @@ impl Actuators {
     fn damaged(&self) {
         let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
         units.iter_mut().for_each(|(_, d)| d.overheard(false));
+    }
+
+    /// A frame that is longer than any can be.
+    fn overrun(&self) {
+        let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
+        units.iter_mut().for_each(|(_, d)| d.overrun());
+    }
+
+    /// Puts faults into all ICON actuators.
+    pub fn inject(&self, faults: &[Fault]) {
+        let (now, wall) = (self.clock.now(), self.clock.wall_ms() / 1000);
+        let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
+        for (_, device) in units.iter_mut() {
+            device.advance(now, wall);
+            if let Actuator::Icon(icon) = device {
+                faults.iter().for_each(|fault| icon.set_fault(*fault, true));
+            }
+        }
     }
 
     /// The unit that a TCP client means.
@@ -219,6 +249,8 @@ where
                     // The frame is over, whatever it was.
                     if crc_holds(&heard) {
                         answer(&mut line, actuators, pace, &heard, Instant::now()).await?;
+                    } else if heard.len() > LONGEST {
+                        actuators.overrun();
                     } else {
                         actuators.damaged();
                     }
@@ -231,11 +263,11 @@ where
             return Ok(());
         }
         heard.extend_from_slice(bytes.get(..count).unwrap_or(&[]));
+        // Too long already: what comes until the line is silent belongs to it.
+        heard.truncate(KEPT);
         let complete = length::request(heard.get(1..).unwrap_or(&[]));
         if complete == Length::Exact(heard.len().saturating_sub(3)) && crc_holds(&heard) {
             answer(&mut line, actuators, pace, &heard, Instant::now()).await?;
-            heard.clear();
-        } else if heard.len() > 4096 {
             heard.clear();
         }
     }

@@ -11,8 +11,9 @@ use crate::config::{DeviceConfig, Mode, Parity};
 use crate::serial;
 use crate::sim::{self, Actuators, Pace};
 use clap::ValueEnum;
+use clap::builder::PossibleValuesParser;
 use shared::device::Device;
-use shared::sim::DopSetup;
+use shared::sim::{DopSetup, Fault};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -60,6 +61,9 @@ pub(super) struct Args {
     /// The tag that it reports. Tags that begin with FV or PV are control valves.
     #[arg(long, default_value = "XV-101")]
     tag: String,
+    /// A fault that an ICON has from the start; may be given several times.
+    #[arg(long, value_name = "KEY", value_parser = PossibleValuesParser::new(Fault::ALL.map(Fault::key)))]
+    fault: Vec<String>,
     #[command(flatten)]
     dop: DopArgs,
     #[command(flatten)]
@@ -209,6 +213,11 @@ async fn simulate(args: &Args) -> ExitCode {
         target: None,
     };
     let actuators = Actuators::with([&device], Clock::start(), args.dop.setup());
+    if !args.fault.is_empty() && !device.device.is_icon() {
+        return refuse("--fault is for --device icon3000v2, icon3000 and icon2000v4");
+    }
+    let faults = args.fault.iter().filter_map(|key| Fault::from_key(key));
+    actuators.inject(&faults.collect::<Vec<_>>());
     if let Some(address) = args.listen {
         return tcp(address, actuators).await;
     }
