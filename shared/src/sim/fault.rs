@@ -1,6 +1,6 @@
 //! Faults that a test or a person puts into a simulated actuator, and the alarms that follow.
 
-use super::Icon3000;
+use super::{Icon3000, command};
 
 /// A fault of an ICON3000.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -173,6 +173,12 @@ impl Icon3000 {
         let there = self.faults.contains(&fault);
         if on && !there {
             self.faults.push(fault);
+            // An alarm clears enumerated open and close commands (table 5, note 1); reading E39: the
+            // bits stay, and the valve goes on when it is over.
+            let stops = fault.stops(true) || fault.stops(false);
+            if stops && matches!(self.command, command::OPEN | command::CLOSE) {
+                self.command = command::NONE;
+            }
             let stamp = self.stamp();
             match fault.signs().code {
                 0 if fault == Fault::PstReturn && self.is_v2() => self.failed_return(),
