@@ -374,4 +374,58 @@ mod tests {
         assert_eq!(registers.count, Some(setup.count));
         assert_eq!(registers.response, Some(setup.response));
     }
+
+    fn two() -> Actuators {
+        let devices = [("XV-1", 1), ("XV-2", 2)]
+            .map(|(tag, unit)| DeviceConfig::simple(tag, Device::Icon3000v2, unit));
+        Actuators::new(&devices, Clock::start())
+    }
+
+    /// A counter of FC 08.
+    fn count(actuators: &Actuators, unit: u8, sub: u8) -> u16 {
+        let answer = actuators.answer(unit, &[8, 0, sub, 0, 0]).unwrap();
+        u16::from_be_bytes([answer[3], answer[4]])
+    }
+
+    /// Sections 8.7.2 and 8.7.5: 11 counts every message on the bus, 14 those for the unit and for all.
+    #[test]
+    fn messages_are_counted_by_whom_they_are_for() {
+        let actuators = two();
+        let read = [3, 0x0B, 0xBC, 0, 1];
+        for unit in [1, 1, 1, 2, 2] {
+            assert!(actuators.answer(unit, &read).is_some());
+        }
+        assert_eq!(actuators.answer(0, &[6, 0x0B, 0xC9, 0, 12]), None);
+        // Three and two for them, one for all; each question counts itself.
+        assert_eq!(count(&actuators, 1, 11), 7);
+        assert_eq!(count(&actuators, 1, 14), 6);
+        assert_eq!(count(&actuators, 2, 11), 9);
+        assert_eq!(count(&actuators, 2, 14), 5);
+        assert_eq!(count(&actuators, 2, 12), 0);
+    }
+
+    /// A frame with a wrong CRC counts under 12; one that is longer than any frame (256 bytes) under 18.
+    #[tokio::test(start_paused = true)]
+    async fn frames_that_nobody_can_read_are_counted() {
+        let actuators = two();
+        let (mut near, far) = tokio::io::duplex(4096);
+        let served = actuators.clone();
+        tokio::spawn(async move { serve_rtu(far, &served, Pace::of(9600)).await });
+        let silence = Duration::from_millis(100);
+        for (bytes, errors, overruns) in [(300, 0, 1), (10, 1, 1), (256, 2, 1), (257, 2, 2)] {
+            near.write_all(&vec![0x55; bytes]).await.unwrap();
+            tokio::time::sleep(silence).await;
+            for unit in [1, 2] {
+                let counted = (count(&actuators, unit, 12), count(&actuators, unit, 18));
+                assert_eq!(counted, (errors, overruns), "{bytes} bytes, unit {unit}");
+            }
+        }
+        // The line works on.
+        near.write_all(&frame(Framing::Rtu, 0, 1, &[3, 0x0B, 0xBC, 0, 1]))
+            .await
+            .unwrap();
+        let mut answer = [0; 7];
+        near.read_exact(&mut answer).await.unwrap();
+        assert!(crc_holds(&answer));
+    }
 }

@@ -2,6 +2,8 @@
 //! its own.
 
 use serde_json::Value;
+use shared::address::{Address, Table};
+use shared::icon3000::snapshot::parse;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -291,4 +293,45 @@ fn damaged_files_are_refused_or_said() {
     let why = text(&half.stderr);
     assert!(why.contains("bad: line "), "{why}");
     assert!(text(&half.stdout).contains("only in the first"));
+}
+
+/// Table 5: lost phase is bit 14 of HR 3010; table 39: record 108 is the result, 5 is T-RET.
+#[test]
+fn faults_are_there_from_the_start() {
+    let folder = Folder::new("faults");
+    let file = folder.file("1");
+    let device = Simulated::start(&["--fault", "lost-phase", "--fault", "pst-return"]);
+    assert_eq!(code(&device.snapshot(&file, &[])), 0);
+    let (snapshot, problems) = parse(&fs::read(&file).unwrap());
+    assert!(problems.is_empty());
+    let snapshot = snapshot.unwrap();
+    let word = |at| {
+        snapshot
+            .image
+            .cell(Table::Holding, Address::new(at))
+            .unwrap()
+            .word
+    };
+    assert_eq!(word(3010), 1 << 14);
+    assert_eq!(word(3090), 12, "the latest alarm is Lost Phase");
+    assert_eq!(snapshot.files.get(3001).unwrap().get(108), Some(5));
+    for (options, said) in [
+        (&["--fault", "hunger"][..], "an ICON has: thermostat, "),
+        (
+            &["--device", "dop", "--fault", "lost-phase"],
+            "--fault is for",
+        ),
+    ] {
+        let output = Command::new(PROGRAM)
+            .args(["simulate", "--listen", "127.0.0.1:0"])
+            .args(options)
+            .output()
+            .unwrap();
+        assert_eq!(code(&output), 2);
+        assert!(
+            text(&output.stderr).contains(said),
+            "{}",
+            text(&output.stderr)
+        );
+    }
 }

@@ -356,7 +356,7 @@ const HELD: [(&str, Held); 89] = [
                 ([5, 0, 0, 0xFF, 0], 3006, 2, true),
             ] {
                 let mut sim = sim(V2);
-                let mut wait = |sim: &mut Icon3000, at: u64| {
+                let wait = |sim: &mut Icon3000, at: u64| {
                     sim.advance(Micros::new(at * 1_000_000), 1_795_651_200 + at);
                 };
                 sim.answer(&write).expect("an answer");
@@ -449,7 +449,9 @@ const HELD: [(&str, Held); 89] = [
         By(|| {
             // As printed, each within its own range and without a common factor.
             assert_eq!(row(HR, 3528).range, Some((0, 4095)));
-            assert_eq!(quality(HR, 3528, &[4095]), Quality::Good);
+            // It is not settled, so not even the largest value is beyond doubt.
+            assert_eq!(settled("E46"), Settled::No);
+            assert_eq!(quality(HR, 3528, &[4095]), Quality::Disputed);
             assert_eq!(quality(HR, 3528, &[4096]), Quality::OutOfRange);
             says(HR, 3528, &[4095], "4095");
             for address in 3789..=3794 {

@@ -11,12 +11,12 @@ use crate::config::{DeviceConfig, Mode, Parity};
 use crate::serial;
 use crate::sim::{self, Actuators, Pace};
 use clap::ValueEnum;
-use clap::builder::PossibleValuesParser;
 use shared::device::Device;
 use shared::sim::{DopSetup, Fault};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio_serial::{SerialPort, SerialStream};
@@ -61,15 +61,38 @@ pub(super) struct Args {
     /// The tag that it reports. Tags that begin with FV or PV are control valves.
     #[arg(long, default_value = "XV-101")]
     tag: String,
-    /// A fault that an ICON has from the start; may be given several times.
-    #[arg(long, value_name = "KEY", value_parser = PossibleValuesParser::new(Fault::ALL.map(Fault::key)))]
-    fault: Vec<String>,
+    /// What is wrong from the start. With an ICON: its key, as `lost-phase` or `pst-return`; a wrong
+    /// one lists them. With a DDC-100 network: `break-3`, `short-3`, `port-2`, `off-7` and so on, or
+    /// such with its time in seconds, `break-3 from 60 to 120 every 240`. May be given several times.
+    #[arg(long, value_name = "FAULT", value_parser = str::parse::<FaultArg>)]
+    fault: Vec<FaultArg>,
     #[command(flatten)]
     dop: DopArgs,
     #[command(flatten)]
     network: ddc::NetworkArgs,
     #[command(flatten)]
     valve: hart::HartArgs,
+}
+
+/// A fault of any simulated device.
+#[derive(Clone, Copy, Debug)]
+enum FaultArg {
+    Icon(Fault),
+    Network(sim::ddc::Fault),
+}
+
+impl FromStr for FaultArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(fault) = Fault::from_key(text) {
+            return Ok(Self::Icon(fault));
+        }
+        let keys = Fault::ALL.map(Fault::key).join(", ");
+        text.parse()
+            .map(Self::Network)
+            .map_err(|why| format!("{why}; an ICON has: {keys}"))
+    }
 }
 
 /// How a DOP device behaves.
@@ -180,8 +203,18 @@ pub(super) fn run(args: &Args) -> ExitCode {
         );
     }
     if !args.ddc100.is_empty() {
+        let mut faults = Vec::new();
+        for fault in &args.fault {
+            match fault {
+                FaultArg::Network(fault) => faults.push(*fault),
+                FaultArg::Icon(fault) => {
+                    return refuse(format_args!("--fault {} is one of an ICON", fault.key()));
+                }
+            }
+        }
         return block_on(ddc::run(
             &args.network,
+            &faults,
             &args.ddc100,
             args.baud.unwrap_or(BAUD),
         ));
@@ -213,11 +246,19 @@ async fn simulate(args: &Args) -> ExitCode {
         target: None,
     };
     let actuators = Actuators::with([&device], Clock::start(), args.dop.setup());
-    if !args.fault.is_empty() && !device.device.is_icon() {
-        return refuse("--fault is for --device icon3000v2, icon3000 and icon2000v4");
+    let mut faults = Vec::new();
+    for fault in &args.fault {
+        match fault {
+            FaultArg::Icon(fault) if device.device.is_icon() => faults.push(*fault),
+            FaultArg::Icon(_) => {
+                return refuse("such a --fault is for --device icon3000v2, icon3000, icon2000v4");
+            }
+            FaultArg::Network(fault) => {
+                return refuse(format_args!("--fault {fault} is one of a --ddc100 network"));
+            }
+        }
     }
-    let faults = args.fault.iter().filter_map(|key| Fault::from_key(key));
-    actuators.inject(&faults.collect::<Vec<_>>());
+    actuators.inject(&faults);
     if let Some(address) = args.listen {
         return tcp(address, actuators).await;
     }

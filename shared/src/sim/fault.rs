@@ -173,10 +173,10 @@ impl Icon3000 {
         let there = self.faults.contains(&fault);
         if on && !there {
             self.faults.push(fault);
-            // An alarm clears enumerated open and close commands (table 5, note 1); reading E39: the
-            // bits stay, and the valve goes on when it is over.
-            let stops = fault.stops(true) || fault.stops(false);
-            if stops && matches!(self.command, command::OPEN | command::CLOSE) {
+            // Every alarm but that of the battery clears enumerated open and close commands (table 5,
+            // note 1); reading E39: the bits stay, and the valve goes on when it is over.
+            let clears = fault.signs().code != 0 && fault != Fault::LowBattery;
+            if clears && matches!(self.command, command::OPEN | command::CLOSE) {
                 self.command = command::NONE;
             }
             let stamp = self.stamp();

@@ -41,10 +41,6 @@ pub(super) struct NetworkArgs {
     /// RTU or ASCII.
     #[arg(long, value_enum, default_value_t = FramingArg::Rtu, requires = "ddc100")]
     framing: FramingArg,
-    /// What is wrong: `break-3`, `short-3`, `port-2`, `off-7` and so on, or such with its time in
-    /// seconds, `break-3 from 60 to 120 every 240`. May be given several times.
-    #[arg(long, value_name = "FAULT", value_parser = str::parse::<Fault>, requires = "ddc100")]
-    fault: Vec<Fault>,
     /// Take the time of the characters too, as on a real cable; for pseudo terminals.
     #[arg(long, requires = "ddc100")]
     paced: bool,
@@ -107,7 +103,12 @@ fn units(text: &str) -> Result<Units, String> {
 }
 
 /// Runs the network on these ports until it is asked to end.
-pub(super) async fn run(args: &NetworkArgs, paths: &[String], baud: u32) -> ExitCode {
+pub(super) async fn run(
+    args: &NetworkArgs,
+    faults: &[Fault],
+    paths: &[String],
+    baud: u32,
+) -> ExitCode {
     let shape = match args.shape {
         Some(ShapeArg::Loop) => DdcShape::Loop,
         Some(ShapeArg::SingleEnded) => DdcShape::SingleEnded,
@@ -130,7 +131,7 @@ pub(super) async fn run(args: &NetworkArgs, paths: &[String], baud: u32) -> Exit
             target: None,
         })
         .collect();
-    let network = match Network::new(shape, &devices, &args.fault, Clock::start()) {
+    let network = match Network::new(shape, &devices, faults, Clock::start()) {
         Ok(network) => network,
         Err(fault) => {
             let count = devices.len();
