@@ -16,7 +16,7 @@ use shared::frame::Framing;
 use shared::frame::check::crc_holds;
 use shared::map::row::Model;
 use shared::pdu::length::{self, Length};
-use shared::sim::{Dop, DopSetup, Fault, Icon3000, Programme};
+use shared::sim::{Dop, DopSetup, Icon3000, Programme};
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -165,7 +165,14 @@ impl Actuators {
                 } else {
                     Programme::Strokes
                 };
-                let icon = Box::new(Icon3000::new(model, &d.tag, programme));
+                let mut icon = Box::new(Icon3000::new(model, &d.tag, programme));
+                // Faults have their time in the logs, so it must be switched on.
+                if !d.faults.is_empty() {
+                    icon.advance(clock.now(), clock.wall_ms() / 1000);
+                }
+                d.faults
+                    .iter()
+                    .for_each(|fault| icon.set_fault(*fault, true));
                 Some((d.unit, Actuator::Icon(icon)))
             })
             .collect();
@@ -204,18 +211,6 @@ impl Actuators {
     fn overrun(&self) {
         let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
         units.iter_mut().for_each(|(_, d)| d.overrun());
-    }
-
-    /// Puts faults into all ICON actuators.
-    pub fn inject(&self, faults: &[Fault]) {
-        let (now, wall) = (self.clock.now(), self.clock.wall_ms() / 1000);
-        let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
-        for (_, device) in units.iter_mut() {
-            device.advance(now, wall);
-            if let Actuator::Icon(icon) = device {
-                faults.iter().for_each(|fault| icon.set_fault(*fault, true));
-            }
-        }
     }
 
     /// The unit that a TCP client means.

@@ -290,9 +290,20 @@ fn check_files(kind: &str, place: &str) -> BTreeMap<u16, Vec<u16>> {
         text[88..].starts_with(&ascii("XV-101")),
         "the tag: {report}"
     );
-    assert!(text[144..].starts_with(&ascii("9.02  4.01")), "{report}");
+    // Reading E63: who takes the printed count of 82 for the length, as pymodbus does, loses the last
+    // two characters; in bytes of our own they are there.
+    let versions = if kind == "tcp" {
+        "9.02  4"
+    } else {
+        "9.02  4.01"
+    };
+    assert!(text[144..].starts_with(&ascii(versions)), "{report}");
     if kind == "rtu" {
-        assert_eq!(report.len(), 2 * 84, "both count bytes are there");
+        assert_eq!(
+            report.len(),
+            2 * 85,
+            "the count, server ID, run indicator and 82 characters"
+        );
     }
     files
 }

@@ -236,20 +236,10 @@ pub(super) fn run(args: &Args) -> ExitCode {
 
 async fn simulate(args: &Args) -> ExitCode {
     let baud = args.baud.unwrap_or(BAUD);
-    let device = DeviceConfig {
-        tag: args.tag.clone(),
-        device: args.device.into(),
-        bus: 0,
-        unit: args.unit,
-        description: String::new(),
-        profile: None,
-        target: None,
-    };
-    let actuators = Actuators::with([&device], Clock::start(), args.dop.setup());
     let mut faults = Vec::new();
     for fault in &args.fault {
         match fault {
-            FaultArg::Icon(fault) if device.device.is_icon() => faults.push(*fault),
+            FaultArg::Icon(fault) if Device::from(args.device).is_icon() => faults.push(*fault),
             FaultArg::Icon(_) => {
                 return refuse("such a --fault is for --device icon3000v2, icon3000, icon2000v4");
             }
@@ -258,7 +248,17 @@ async fn simulate(args: &Args) -> ExitCode {
             }
         }
     }
-    actuators.inject(&faults);
+    let device = DeviceConfig {
+        tag: args.tag.clone(),
+        device: args.device.into(),
+        bus: 0,
+        unit: args.unit,
+        description: String::new(),
+        faults,
+        profile: None,
+        target: None,
+    };
+    let actuators = Actuators::with([&device], Clock::start(), args.dop.setup());
     if let Some(address) = args.listen {
         return tcp(address, actuators).await;
     }

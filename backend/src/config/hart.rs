@@ -445,6 +445,7 @@ pub(super) fn simulated(bus: usize) -> [DeviceConfig; 2] {
         bus,
         unit,
         description: description.into(),
+        faults: Vec::new(),
         profile: None,
         target: Some(Target::Polling(unit)),
     };

@@ -127,6 +127,7 @@ pub(super) async fn run(
             bus: 0,
             unit,
             description: String::new(),
+            faults: Vec::new(),
             profile: None,
             target: None,
         })
