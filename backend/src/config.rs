@@ -18,6 +18,7 @@ use shared::device::Device;
 use shared::dop::Profile;
 use shared::frame::Framing;
 use shared::hart::link::Target;
+use shared::sim::Fault;
 use std::fmt;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -242,6 +243,8 @@ pub struct DeviceConfig {
     pub profile: Option<Arc<Profile>>,
     /// For a HART device: how it is found.
     pub target: Option<Target>,
+    /// For a simulated ICON: what is wrong with it from the start.
+    pub faults: Vec<Fault>,
 }
 
 impl DeviceConfig {
@@ -256,6 +259,7 @@ impl DeviceConfig {
             description: String::new(),
             profile: None,
             target: None,
+            faults: Vec::new(),
         }
     }
 }
@@ -336,6 +340,7 @@ impl Config {
             bus,
             unit,
             description: description.into(),
+            faults: Vec::new(),
             profile: (device == Device::Dop).then(crate::sim::dop_profile),
             target: None,
         };

@@ -32,6 +32,10 @@ const IDLE: Duration = Duration::from_secs(300);
 /// Unit address by which a device on Modbus TCP is meant whatever its own address is.
 /// Source: Modbus Messaging on TCP/IP V1.0b, section 4.4.1.2.
 const DIRECT: u8 = 255;
+/// Longest frame of Modbus RTU (Modbus over Serial Line V1.02, section 2.5.1).
+const LONGEST: usize = 256;
+/// What is heard without a silence is kept up to here.
+const KEPT: usize = 4096;
 /// Exception "gateway target device failed to respond".
 const NO_TARGET: u8 = 0x0B;
 
@@ -60,6 +64,13 @@ impl Actuator {
     fn overheard(&mut self, sound: bool) {
         match self {
             Self::Icon(icon) => icon.overheard(sound),
+            Self::Dop(_) => {}
+        }
+    }
+
+    fn overrun(&mut self) {
+        match self {
+            Self::Icon(icon) => icon.overrun(),
             Self::Dop(_) => {}
         }
     }
@@ -154,7 +165,14 @@ impl Actuators {
                 } else {
                     Programme::Strokes
                 };
-                let icon = Box::new(Icon3000::new(model, &d.tag, programme));
+                let mut icon = Box::new(Icon3000::new(model, &d.tag, programme));
+                // Faults have their time in the logs, so it must be switched on.
+                if !d.faults.is_empty() {
+                    icon.advance(clock.now(), clock.wall_ms() / 1000);
+                }
+                d.faults
+                    .iter()
+                    .for_each(|fault| icon.set_fault(*fault, true));
                 Some((d.unit, Actuator::Icon(icon)))
             })
             .collect();
@@ -172,11 +190,12 @@ impl Actuators {
         let mut answer = None;
         for (address, device) in units.iter_mut() {
             device.advance(now, wall);
-            device.overheard(true);
             if unit == 0 {
                 device.broadcast(pdu);
             } else if *address == unit {
                 answer = device.answer(pdu);
+            } else {
+                device.overheard(true);
             }
         }
         answer
@@ -186,6 +205,12 @@ impl Actuators {
     fn damaged(&self) {
         let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
         units.iter_mut().for_each(|(_, d)| d.overheard(false));
+    }
+
+    /// A frame that is longer than any can be.
+    fn overrun(&self) {
+        let mut units = self.units.lock().unwrap_or_else(PoisonError::into_inner);
+        units.iter_mut().for_each(|(_, d)| d.overrun());
     }
 
     /// The unit that a TCP client means.
@@ -219,6 +244,8 @@ where
                     // The frame is over, whatever it was.
                     if crc_holds(&heard) {
                         answer(&mut line, actuators, pace, &heard, Instant::now()).await?;
+                    } else if heard.len() > LONGEST {
+                        actuators.overrun();
                     } else {
                         actuators.damaged();
                     }
@@ -231,11 +258,11 @@ where
             return Ok(());
         }
         heard.extend_from_slice(bytes.get(..count).unwrap_or(&[]));
+        // Too long already: what comes until the line is silent belongs to it.
+        heard.truncate(KEPT);
         let complete = length::request(heard.get(1..).unwrap_or(&[]));
         if complete == Length::Exact(heard.len().saturating_sub(3)) && crc_holds(&heard) {
             answer(&mut line, actuators, pace, &heard, Instant::now()).await?;
-            heard.clear();
-        } else if heard.len() > 4096 {
             heard.clear();
         }
     }
@@ -341,5 +368,59 @@ mod tests {
         assert_eq!(registers.status, Some(setup.status));
         assert_eq!(registers.count, Some(setup.count));
         assert_eq!(registers.response, Some(setup.response));
+    }
+
+    fn two() -> Actuators {
+        let devices = [("XV-1", 1), ("XV-2", 2)]
+            .map(|(tag, unit)| DeviceConfig::simple(tag, Device::Icon3000v2, unit));
+        Actuators::new(&devices, Clock::start())
+    }
+
+    /// A counter of FC 08.
+    fn count(actuators: &Actuators, unit: u8, sub: u8) -> u16 {
+        let answer = actuators.answer(unit, &[8, 0, sub, 0, 0]).unwrap();
+        u16::from_be_bytes([answer[3], answer[4]])
+    }
+
+    /// Sections 8.7.2 and 8.7.5: 11 counts every message on the bus, 14 those for the unit and for all.
+    #[test]
+    fn messages_are_counted_by_whom_they_are_for() {
+        let actuators = two();
+        let read = [3, 0x0B, 0xBC, 0, 1];
+        for unit in [1, 1, 1, 2, 2] {
+            assert!(actuators.answer(unit, &read).is_some());
+        }
+        assert_eq!(actuators.answer(0, &[6, 0x0B, 0xC9, 0, 12]), None);
+        // Three and two for them, one for all; each question counts itself.
+        assert_eq!(count(&actuators, 1, 11), 7);
+        assert_eq!(count(&actuators, 1, 14), 6);
+        assert_eq!(count(&actuators, 2, 11), 9);
+        assert_eq!(count(&actuators, 2, 14), 5);
+        assert_eq!(count(&actuators, 2, 12), 0);
+    }
+
+    /// A frame with a wrong CRC counts under 12; one that is longer than any frame (256 bytes) under 18.
+    #[tokio::test(start_paused = true)]
+    async fn frames_that_nobody_can_read_are_counted() {
+        let actuators = two();
+        let (mut near, far) = tokio::io::duplex(4096);
+        let served = actuators.clone();
+        tokio::spawn(async move { serve_rtu(far, &served, Pace::of(9600)).await });
+        let silence = Duration::from_millis(100);
+        for (bytes, errors, overruns) in [(300, 0, 1), (10, 1, 1), (256, 2, 1), (257, 2, 2)] {
+            near.write_all(&vec![0x55; bytes]).await.unwrap();
+            tokio::time::sleep(silence).await;
+            for unit in [1, 2] {
+                let counted = (count(&actuators, unit, 12), count(&actuators, unit, 18));
+                assert_eq!(counted, (errors, overruns), "{bytes} bytes, unit {unit}");
+            }
+        }
+        // The line works on.
+        near.write_all(&frame(Framing::Rtu, 0, 1, &[3, 0x0B, 0xBC, 0, 1]))
+            .await
+            .unwrap();
+        let mut answer = [0; 7];
+        near.read_exact(&mut answer).await.unwrap();
+        assert!(crc_holds(&answer));
     }
 }

@@ -42,6 +42,7 @@ fn device(profile: Arc<Profile>) -> DeviceConfig {
         bus: 0,
         unit: UNIT,
         description: String::new(),
+        faults: Vec::new(),
         profile: Some(profile),
         target: None,
     }

@@ -264,6 +264,7 @@ fn handle(framing: Framing, device: Device, stream: DuplexStream) -> Handle {
         bus: 0,
         unit: UNIT,
         description: String::new(),
+        faults: Vec::new(),
         profile: None,
         target: None,
     }];

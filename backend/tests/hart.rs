@@ -36,6 +36,7 @@ fn device(tag: &str, family: Family, target: Target) -> DeviceConfig {
             _ => 0,
         },
         description: String::new(),
+        faults: Vec::new(),
         profile: None,
         target: Some(target),
     }

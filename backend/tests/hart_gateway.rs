@@ -114,6 +114,7 @@ fn config(host: SocketAddr, udp: bool) -> Config {
         bus: 0,
         unit: 0,
         description: String::new(),
+        faults: Vec::new(),
         profile: None,
         target: Some(target),
     };

@@ -11,7 +11,7 @@ use backend::clock::Clock;
 use backend::config::{BusConfig, Config, DeviceConfig, LISTEN, LineConfig, Mode};
 use backend::plant::Plant;
 use backend::sim::{Actuators, Pace, serve_rtu};
-use backend::snapshot::{Taken, take};
+use backend::snapshot::{Taken, take, which};
 use common::{Page, WAIT, serve};
 use shared::decode::pdu_of;
 use shared::device::Device;
@@ -251,8 +251,8 @@ async fn through_a_page() {
     assert!(text.contains("at most 256"), "{text}");
 }
 
-/// A whole device over a line of 9600 8E1 whose time is simulated.
-async fn whole(device: Device, model: Model) -> (Taken, Duration) {
+/// A device on a line of 9600 8E1 whose time is simulated.
+fn slow(device: Device) -> bus::Handle {
     let devices = [DeviceConfig::simple("XV-1", device, UNIT)];
     let line = LineConfig::Serial {
         framing: Framing::Rtu,
@@ -271,7 +271,12 @@ async fn whole(device: Device, model: Model) -> (Taken, Duration) {
     let bus = config(line).buses.remove(0);
     let board = Board::new(activity.clone());
     let recorder = Recorder::new("a", clock, activity);
-    let handle = bus::start(bus, &devices, plug, clock, board, recorder);
+    bus::start(bus, &devices, plug, clock, board, recorder)
+}
+
+/// All of it.
+async fn whole(device: Device, model: Model) -> (Taken, Duration) {
+    let handle = slow(device);
     let began = tokio::time::Instant::now();
     let empty = Snapshot::new(model, UNIT, "XV-1");
     let taken = take(&handle, 0, empty, |_, _, _| {}).await.unwrap();
@@ -285,6 +290,7 @@ async fn a_snapshot_takes_little_more_than_the_wire() {
     for (device, model) in [
         (Device::Icon3000v2, Model::Icon3000v2),
         (Device::Icon3000, Model::Icon3000),
+        (Device::Icon2000v4, Model::Icon2000v4),
     ] {
         let (Taken { snapshot, wire }, took) = whole(device, model).await;
         let bytes = f64::from(wire.request_bytes + wire.response_bytes);
@@ -300,12 +306,25 @@ async fn a_snapshot_takes_little_more_than_the_wire() {
         assert!((1.0..=1.1).contains(&ratio), "{ratio}");
         assert!(snapshot.failures.is_empty(), "{:?}", snapshot.failures);
         assert!(snapshot.identity.is_some());
-        assert_eq!(snapshot.files.is_empty(), model == Model::Icon3000);
+        assert_eq!(snapshot.files.is_empty(), model != Model::Icon3000v2);
         // What is written is read back the same, and the same is no change.
         let (back, problems) = parse(snapshot.to_text().as_bytes());
         assert!(problems.is_empty(), "{problems:?}");
         let back = back.unwrap();
         assert!(diff(&snapshot, &back).is_empty());
         assert_eq!(back.to_text(), snapshot.to_text());
+    }
+}
+
+/// The device itself tells which model it is, whatever it is taken for.
+#[tokio::test(start_paused = true)]
+async fn a_device_tells_its_model() {
+    for (device, model) in [
+        (Device::Icon3000v2, Model::Icon3000v2),
+        (Device::Icon3000, Model::Icon3000),
+        (Device::Icon2000v4, Model::Icon2000v4),
+    ] {
+        let guess = which(&slow(device), 0).await.unwrap();
+        assert_eq!(guess.model, Some(model), "{}", guess.why);
     }
 }

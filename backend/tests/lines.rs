@@ -43,6 +43,7 @@ fn device(unit: u8) -> DeviceConfig {
         bus: 0,
         unit,
         description: String::new(),
+        faults: Vec::new(),
         profile: None,
         target: None,
     }

@@ -20,6 +20,7 @@ pub mod ddc100;
 mod demand;
 mod dop;
 mod drive;
+mod emergency;
 mod fault;
 mod files;
 #[cfg(feature = "hart")]
@@ -29,6 +30,7 @@ mod log;
 mod publish;
 mod setup;
 mod store;
+mod stroke;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -37,6 +39,7 @@ use crate::capture::Micros;
 use crate::map::row::{Level, Model};
 use clock::Stamp;
 use drive::{Demand, Drive, Motion};
+use emergency::Emergency;
 use history::{History, Partial, source};
 use log::Log;
 use store::{Store, at};
@@ -91,6 +94,10 @@ pub struct Icon3000 {
     faults: Vec<Fault>,
     /// Files of an ICON3000v2.
     history: History,
+    /// The emergency stroke that is going on.
+    efs: Emergency,
+    /// Bits of HR 3009 that the last stroke test left.
+    test_warnings: u16,
     /// The test that is going on, and the tenths of a second since its command or its turn.
     test: Partial,
     test_tenths: u16,
@@ -174,6 +181,8 @@ impl Icon3000 {
             failing: false,
             faults: Vec::new(),
             history: History::default(),
+            efs: Emergency::Off,
+            test_warnings: 0,
             test: Partial::default(),
             test_tenths: 0,
             full_report: false,
@@ -251,7 +260,7 @@ impl Icon3000 {
     #[must_use]
     pub fn answer(&mut self, pdu: &[u8]) -> Option<Vec<u8>> {
         self.since_message_ms = 0;
-        count(&mut self.counters.messages);
+        self.heard();
         self.publish_counters();
         let response = self.respond(pdu)?;
         if response.first().is_some_and(|f| *f >= 0x80) {
@@ -264,14 +273,25 @@ impl Icon3000 {
     /// Carries out a PDU that is addressed to everybody. Only writes are allowed, and nobody answers.
     pub fn broadcast(&mut self, pdu: &[u8]) {
         self.since_message_ms = 0;
-        count(&mut self.counters.messages);
+        self.heard();
         if pdu.first().is_some_and(|f| matches!(f, 5 | 6 | 15 | 16)) {
             let _unsent = self.respond(pdu);
             self.publish();
         }
     }
 
-    /// Counts a frame on the bus, whoever it is for. Damaged ones are counted apart.
+    /// Counts a frame for this actuator, which is one on the bus too.
+    const fn heard(&mut self) {
+        count(&mut self.counters.bus_messages);
+        count(&mut self.counters.messages);
+    }
+
+    /// Counts a frame that came in too fast or was too long to be kept.
+    pub const fn overrun(&mut self) {
+        count(&mut self.counters.overruns);
+    }
+
+    /// Counts a frame on the bus that is for somebody else. Damaged ones are counted apart.
     pub const fn overheard(&mut self, sound: bool) {
         if sound {
             count(&mut self.counters.bus_messages);
@@ -304,6 +324,7 @@ impl Icon3000 {
             Demand::Stop => false,
             Demand::Open => self.is_held(true),
             Demand::Close => self.is_held(false),
+            Demand::Follow(_) if self.has_fault(Fault::RequestSignal) => true,
             Demand::Reach(to) | Demand::Follow(to) => self.is_held(to > self.drive.position()),
         };
         let demand = if is_held { Demand::Stop } else { demand };
@@ -311,8 +332,10 @@ impl Icon3000 {
         let inhibit = u32::from(self.store.get(at::MOTION_INHIBIT)).saturating_mul(1000);
         let stamp = self.stamp();
         let before = self.drive.motion;
+        self.drive.slow = self.slowness();
         let done = self.drive.step(STEP_MS, demand, dead_band, inhibit);
         self.keep_history(before);
+        self.emergency();
         if done.hi_torque {
             self.warnings.add(self.wall, stamp, 2);
         }

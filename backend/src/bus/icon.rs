@@ -2,7 +2,7 @@
 //!
 //! Reads of all pages stand in one queue. Steps that read files and follow each other share
 //! requests, as many groups in each as fit; if the device refuses such a request, its groups are
-//! asked for one by one, for it may be one of them only.
+//! asked for one by one, for it may be one of them only. A busy device is asked again.
 
 #[cfg(test)]
 mod tests;
@@ -11,6 +11,7 @@ use super::query::{Query, is_counter};
 use super::{ClientId, Outlet, Report};
 use crate::config::DeviceConfig;
 use shared::capture::Micros;
+use shared::icon3000::collect::{BUSY_TRIES, BUSY_WAIT_MS};
 use shared::icon3000::{FileRead, Span, plan};
 use shared::proto::{IconAsk, IconNews, IconStep, Outcome};
 use shared::render::hex;
@@ -18,6 +19,8 @@ use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::Instant;
 
+/// Exception "server device busy".
+const BUSY: u8 = 6;
 /// Reads that may wait for one device.
 const MAX_JOBS: usize = 64;
 /// After so many requests in a row without any answer the others are given up.
@@ -30,6 +33,9 @@ const PAUSE: Duration = Duration::from_millis(5);
 struct Part {
     step: u32,
     query: Query,
+    /// How often the device was busy, and when it may be asked again.
+    busy: u8,
+    not_before: Option<Instant>,
 }
 
 /// One message of a page.
@@ -45,6 +51,8 @@ struct Job {
     failed: u32,
     /// Requests in a row for which the device did not answer at all.
     silent: u8,
+    /// What is under way is not sent again.
+    cancelled: bool,
 }
 
 /// The reads of one ICON3000.
@@ -82,6 +90,7 @@ impl IconUnit {
                     ok: 0,
                     failed: 0,
                     silent: 0,
+                    cancelled: false,
                 };
                 match parts(&steps) {
                     Ok(parts) if !full => {
@@ -119,6 +128,7 @@ impl IconUnit {
             if which(job) {
                 let kept = usize::from(self.under_way && at == 0);
                 job.parts.truncate(kept);
+                job.cancelled = true;
             }
         }
     }
@@ -128,13 +138,18 @@ impl IconUnit {
     pub fn due(&self, now: Instant) -> Option<Instant> {
         let job = self.jobs.front()?;
         let ready = job.out.has_room();
-        Some(if ready { now } else { now + PAUSE })
+        let rest = job.parts.front().and_then(|part| part.not_before);
+        let soon = if ready { now } else { now + PAUSE };
+        Some(rest.map_or(soon, |rest| rest.max(soon)))
     }
 
     /// Takes the next thing to send.
     pub fn take(&mut self) -> Option<Query> {
         let job = self.jobs.front().filter(|job| job.out.has_room())?;
         let part = job.parts.front()?;
+        if part.not_before.is_some_and(|rest| rest > Instant::now()) {
+            return None;
+        }
         self.under_way = true;
         Some(part.query.clone())
     }
@@ -145,8 +160,17 @@ impl IconUnit {
         let Some(job) = self.jobs.front_mut() else {
             return;
         };
-        if let Some(part) = job.parts.pop_front() {
-            job.answered(&self.tag, &part, query, report, at);
+        match job.parts.pop_front() {
+            // "The master should retransmit the request later" (VCIOM-16345-EN, table 50).
+            Some(mut part) if part.is_again(report) && !job.cancelled => {
+                part.busy += 1;
+                let wait = Duration::from_millis(BUSY_WAIT_MS.into());
+                part.not_before = Some(Instant::now() + wait);
+                job.silent = 0;
+                job.parts.push_front(part);
+            }
+            Some(part) => job.answered(&self.tag, &part, query, report, at),
+            None => {}
         }
         self.settle();
     }
@@ -180,8 +204,10 @@ impl Job {
             (None, Some(code)) => hex(&[request.first().copied().unwrap_or(0) | 0x80, code]),
             (None, None) => String::new(),
         };
+        // Illegal address or value.
+        let blames_a_part = matches!(report.code, Some(2 | 3));
         let one_of_several = match query {
-            Query::File(file) if report.code.is_some() && file.spans().len() > 1 => file.split(),
+            Query::File(file) if blames_a_part && file.spans().len() > 1 => file.split(),
             _ => Vec::new(),
         };
         self.silent = match report.outcome {
@@ -207,9 +233,8 @@ impl Job {
             let more = u32::try_from(one_of_several.len()).unwrap_or(0);
             self.total = self.total.saturating_add(more).saturating_sub(1);
             for file in one_of_several.into_iter().rev() {
-                let query = Query::File(file);
-                let step = part.step;
-                self.parts.push_front(Part { step, query });
+                self.parts
+                    .push_front(Part::new(part.step, Query::File(file)));
             }
         }
         if self.silent >= SILENT && !self.parts.is_empty() {
@@ -269,6 +294,20 @@ impl Job {
 }
 
 impl Part {
+    /// True if the device was busy, and not too often yet.
+    fn is_again(&self, report: &Report) -> bool {
+        report.code == Some(BUSY) && self.busy < BUSY_TRIES
+    }
+
+    fn new(step: u32, query: Query) -> Self {
+        Self {
+            step,
+            query,
+            busy: 0,
+            not_before: None,
+        }
+    }
+
     /// What is asked, for people.
     fn words(&self) -> String {
         match &self.query {
@@ -313,7 +352,7 @@ fn parts(steps: &[IconStep]) -> Result<VecDeque<Part>, u32> {
         };
         parts.extend(file_parts(&files));
         files.clear();
-        parts.push_back(Part { step, query });
+        parts.push_back(Part::new(step, query));
     }
     parts.extend(file_parts(&files));
     Ok(parts)
@@ -330,9 +369,6 @@ fn file_parts(files: &[(u32, Span)]) -> Vec<Part> {
     };
     plan::plan(files.iter().map(|(_, span)| *span))
         .into_iter()
-        .map(|read| Part {
-            step: step_of(&read).unwrap_or(0),
-            query: Query::File(read),
-        })
+        .map(|read| Part::new(step_of(&read).unwrap_or(0), Query::File(read)))
         .collect()
 }

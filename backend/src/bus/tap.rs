@@ -151,6 +151,7 @@ mod tests {
             bus: 0,
             unit: 4,
             description: String::new(),
+            faults: Vec::new(),
             profile: Some(profile.into()),
             target: None,
         };

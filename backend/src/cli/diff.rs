@@ -1,28 +1,32 @@
-//! `valvescope diff`: what changed between two snapshots.
+//! `valvescope diff`: what changed between two snapshots, or since one.
 
+use super::live::Where;
 use super::snapshot::open;
-use super::{MISUSE, refuse};
+use super::{MISUSE, block_on, refuse};
 use clap::ValueEnum;
 use serde_json::json;
-use shared::icon3000::snapshot::{Change, Diff, Sort, diff};
+use shared::icon3000::snapshot::{Change, Diff, Snapshot, Sort, diff};
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Compare two snapshots by meaning.
+/// Compare two snapshots, or one with the device as it is now, by meaning.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// The earlier snapshot.
     first: PathBuf,
-    /// The later snapshot.
-    second: PathBuf,
+    /// The later snapshot; without it, the device that --device, --port or --host names is read.
+    #[arg(conflicts_with_all = ["device", "port", "host"])]
+    second: Option<PathBuf>,
     /// Also print what changes by itself: positions, counters, the clock.
     #[arg(long)]
     all: bool,
     /// What to print: readable text, or one JSON object a line.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
+    #[command(flatten)]
+    live: Where,
 }
 
 /// Forms of output.
@@ -34,13 +38,35 @@ enum Format {
     Json,
 }
 
-/// Compares. 0: nothing that lasts has changed; 1: something has; 2: a file could not be read.
+/// Compares. 0: nothing that lasts has changed; 1: something has; 2: a file or the device could not
+/// be read.
 pub(super) fn run(args: &Args) -> ExitCode {
-    let (first, second) = match (open(&args.first), open(&args.second)) {
-        (Ok(first), Ok(second)) => (first, second),
-        (Err(why), _) | (_, Err(why)) => return refuse(why),
-    };
-    let diff = diff(&first, &second);
+    match both(args) {
+        Ok((first, second)) => compare(args, &first, &second),
+        Err(why) => refuse(why),
+    }
+}
+
+/// The two sides.
+fn both(args: &Args) -> Result<(Snapshot, Snapshot), String> {
+    let first = open(&args.first)?;
+    if let Some(second) = &args.second {
+        return Ok((first, open(second)?));
+    }
+    if !args.live.is_given() {
+        return Err(
+            "say what to compare with: a second snapshot, or a device with --device, --port or \
+             --host"
+                .to_owned(),
+        );
+    }
+    let live = block_on(args.live.read())?;
+    eprintln!("{}", live.summary);
+    Ok((first, live.snapshot))
+}
+
+fn compare(args: &Args, first: &Snapshot, second: &Snapshot) -> ExitCode {
+    let diff = diff(first, second);
     let out = match args.format {
         Format::Text => text(&diff, args.all),
         Format::Json => lines(&diff, args.all),

@@ -5,6 +5,7 @@ mod decode;
 mod diff;
 mod dop;
 mod hart;
+mod live;
 mod maps;
 mod serve;
 mod simulate;
@@ -49,7 +50,7 @@ enum Verb {
     Dop(dop::Args),
     /// Save a whole ICON3000 as one file: registers, identity, counters, logs, curves.
     Snapshot(snapshot::Args),
-    /// Compare two snapshots by meaning.
+    /// Compare two snapshots, or one with the device, by meaning.
     Diff(diff::Args),
     /// DDC-100 networks: poll one at the terminal, estimate how long a scan takes.
     Ddc100(ddc100::Ddc100Args),
@@ -155,8 +156,25 @@ fn log_to_stderr() {
     let _installed = subscriber.try_init();
 }
 
+/// What a command gives when its threads can't be started.
+trait Refused {
+    fn refused(why: String) -> Self;
+}
+
+impl Refused for ExitCode {
+    fn refused(why: String) -> Self {
+        refuse(why)
+    }
+}
+
+impl<T> Refused for Result<T, String> {
+    fn refused(why: String) -> Self {
+        Err(why)
+    }
+}
+
 /// Runs a future on a runtime of its own.
-fn block_on(future: impl Future<Output = ExitCode>) -> ExitCode {
+fn block_on<T: Refused>(future: impl Future<Output = T>) -> T {
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)
         .thread_name("valvescope")
@@ -164,12 +182,12 @@ fn block_on(future: impl Future<Output = ExitCode>) -> ExitCode {
         .build();
     match runtime {
         Ok(runtime) => {
-            let code = runtime.block_on(future);
+            let outcome = runtime.block_on(future);
             // A serial port may hang in the kernel; the program ends all the same.
             runtime.shutdown_background();
-            code
+            outcome
         }
-        Err(error) => refuse(format_args!("can't start its threads: {error}")),
+        Err(error) => T::refused(format!("can't start its threads: {error}")),
     }
 }
 

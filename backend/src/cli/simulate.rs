@@ -12,10 +12,11 @@ use crate::serial;
 use crate::sim::{self, Actuators, Pace};
 use clap::ValueEnum;
 use shared::device::Device;
-use shared::sim::DopSetup;
+use shared::sim::{DopSetup, Fault};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio_serial::{SerialPort, SerialStream};
@@ -60,12 +61,46 @@ pub(super) struct Args {
     /// The tag that it reports. Tags that begin with FV or PV are control valves.
     #[arg(long, default_value = "XV-101")]
     tag: String,
+    /// What is wrong: with an ICON `lost-phase` and the like, with a DDC-100 network `break-3` and the
+    /// like; `--help` lists them. May be given several times.
+    #[arg(long, long_help = fault_help(), value_name = "FAULT", value_parser = str::parse::<FaultArg>)]
+    fault: Vec<FaultArg>,
     #[command(flatten)]
     dop: DopArgs,
     #[command(flatten)]
     network: ddc::NetworkArgs,
     #[command(flatten)]
     valve: hart::HartArgs,
+}
+
+/// Every name of a fault.
+fn fault_help() -> String {
+    let keys = Fault::ALL.map(Fault::key).join(", ");
+    let network = ddc::fault_help();
+    format!(
+        "What is wrong from the start; may be given several times. With an ICON {keys}; {network}"
+    )
+}
+
+/// A fault of any simulated device.
+#[derive(Clone, Copy, Debug)]
+enum FaultArg {
+    Icon(Fault),
+    Network(sim::ddc::Fault),
+}
+
+impl FromStr for FaultArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(fault) = Fault::from_key(text) {
+            return Ok(Self::Icon(fault));
+        }
+        let keys = Fault::ALL.map(Fault::key).join(", ");
+        text.parse()
+            .map(Self::Network)
+            .map_err(|why| format!("{why}; an ICON has: {keys}"))
+    }
 }
 
 /// How a DOP device behaves.
@@ -176,8 +211,18 @@ pub(super) fn run(args: &Args) -> ExitCode {
         );
     }
     if !args.ddc100.is_empty() {
+        let mut faults = Vec::new();
+        for fault in &args.fault {
+            match fault {
+                FaultArg::Network(fault) => faults.push(*fault),
+                FaultArg::Icon(fault) => {
+                    return refuse(format_args!("--fault {} is one of an ICON", fault.key()));
+                }
+            }
+        }
         return block_on(ddc::run(
             &args.network,
+            &faults,
             &args.ddc100,
             args.baud.unwrap_or(BAUD),
         ));
@@ -199,12 +244,25 @@ pub(super) fn run(args: &Args) -> ExitCode {
 
 async fn simulate(args: &Args) -> ExitCode {
     let baud = args.baud.unwrap_or(BAUD);
+    let mut faults = Vec::new();
+    for fault in &args.fault {
+        match fault {
+            FaultArg::Icon(fault) if Device::from(args.device).is_icon() => faults.push(*fault),
+            FaultArg::Icon(_) => {
+                return refuse("such a --fault is for --device icon3000v2, icon3000, icon2000v4");
+            }
+            FaultArg::Network(fault) => {
+                return refuse(format_args!("--fault {fault} is one of a --ddc100 network"));
+            }
+        }
+    }
     let device = DeviceConfig {
         tag: args.tag.clone(),
         device: args.device.into(),
         bus: 0,
         unit: args.unit,
         description: String::new(),
+        faults,
         profile: None,
         target: None,
     };

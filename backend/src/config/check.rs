@@ -5,6 +5,7 @@ use super::{
 };
 use shared::device::{Device, Family};
 use shared::frame::Framing;
+use shared::sim::Fault;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
@@ -380,6 +381,7 @@ fn device(
         None if device.is_dop() => Some(Arc::default()),
         None => None,
     };
+    let faults = faults(&raw, simulated && device.is_icon())?;
     Ok(DeviceConfig {
         tag: tag.clone(),
         device,
@@ -388,7 +390,26 @@ fn device(
         description: raw.description.map(Spanned::into_inner).unwrap_or_default(),
         profile,
         target,
+        faults,
     })
+}
+
+/// What is wrong with a simulated ICON.
+fn faults(raw: &raw::Device, simulated: bool) -> Result<Vec<Fault>, Wrong> {
+    let mut faults = Vec::new();
+    for key in raw.faults.iter().flatten() {
+        if !simulated {
+            let text = "`faults` is for a simulated icon3000v2, icon3000 or icon2000v4; remove it";
+            return wrong(key, text.to_owned());
+        }
+        let Some(fault) = Fault::from_key(key.get_ref()) else {
+            let keys = Fault::ALL.map(Fault::key).join(", ");
+            let text = format!("`faults`: \"{}\" is none of {keys}", key.get_ref());
+            return wrong(key, text);
+        };
+        faults.push(fault);
+    }
+    Ok(faults)
 }
 
 /// The unit address of a device on a Modbus line.

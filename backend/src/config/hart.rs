@@ -454,6 +454,7 @@ pub(super) fn simulated(bus: usize) -> [DeviceConfig; 5] {
         bus,
         unit,
         description: description.into(),
+        faults: Vec::new(),
         profile: None,
         target: Some(Target::Polling(unit)),
     };

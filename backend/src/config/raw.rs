@@ -66,5 +66,6 @@ pub(super) struct Device {
     pub hart_tag: Option<Spanned<String>>,
     pub long_tag: Option<Spanned<String>>,
     pub profile: Option<Spanned<String>>,
+    pub faults: Option<Vec<Spanned<String>>>,
     pub description: Option<Spanned<String>>,
 }

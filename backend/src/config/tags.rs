@@ -89,6 +89,7 @@ pub(super) fn read(
             bus,
             unit,
             description: named.description.clone(),
+            faults: Vec::new(),
             profile: None,
             target: None,
         });

@@ -618,3 +618,26 @@ fn a_tag_list_names_the_units_of_a_network() {
         "{stray}"
     );
 }
+
+#[test]
+fn a_simulated_icon_may_have_faults() {
+    use shared::sim::Fault;
+    let icon = |faults: &str| format!("{ICON}\nfaults = [{faults}]");
+    let config = with(
+        "kind = \"simulator\"",
+        &icon("\"lost-phase\", \"pst-return\""),
+    )
+    .unwrap();
+    assert_eq!(
+        config.devices[0].faults,
+        [Fault::LostPhase, Fault::PstReturn]
+    );
+    let wrong = |bus: &str, faults: &str| with(bus, &icon(faults)).unwrap_err();
+    let hunger = wrong("kind = \"simulator\"", "\"hunger\"");
+    assert!(
+        hunger.contains("hunger") && hunger.contains("thermostat, "),
+        "{hunger}"
+    );
+    let real = wrong(RTU, "\"lost-phase\"");
+    assert!(real.contains("simulated"), "{real}");
+}

@@ -39,6 +39,7 @@ pub fn units(kinds: &[Device]) -> Vec<DeviceConfig> {
         bus: 0,
         unit: u8::try_from(at + 1).unwrap(),
         description: String::new(),
+        faults: Vec::new(),
         profile: None,
         target: None,
     };

@@ -1,9 +1,8 @@
 //! What is wanted of the valve: by the bus, by a test, or by its programme.
 
-use super::drive::{self, Demand};
-use super::history;
+use super::drive::Demand;
 use super::store::at;
-use super::{Icon3000, Programme, Pst, RESUME_MS, STEP_MS, bit, command};
+use super::{Icon3000, Programme, Pst, RESUME_MS, bit, command};
 
 impl Icon3000 {
     /// True while the bus wants something.
@@ -57,7 +56,7 @@ impl Icon3000 {
             return action_of(self.store.get(at::FAIL_SAFE_ACTION), position);
         }
         match self.pst {
-            Pst::Away(target) => return Demand::Reach(target),
+            Pst::Away(target) => return Demand::Reach(target.saturating_sub(self.coast())),
             Pst::Pause(_) => return Demand::Stop,
             Pst::Back => return Demand::Open,
             Pst::Off => {}
@@ -100,99 +99,6 @@ impl Icon3000 {
         let which = which.checked_rem(12).unwrap_or(0);
         let which = usize::try_from(which).unwrap_or(0);
         LEVELS.get(which).copied().unwrap_or(0)
-    }
-
-    /// Goes on with a partial stroke test (section 12).
-    pub(super) fn test(&mut self) {
-        if self.pst == Pst::Off {
-            return;
-        }
-        // A shutdown or a stop ends the test (table 39, note 5: bits 3 and 2).
-        let reset = u32::from(self.is_esd()) << 3 | u32::from(self.has(bit::STOP)) << 2;
-        if reset != 0 {
-            self.test.reset = reset;
-            return self.end_test(3, 1 << 4);
-        }
-        self.test_tenths = self.test_tenths.saturating_add(1);
-        let gone = drive::OPEN.saturating_sub(self.drive.position());
-        let percent = usize::try_from(gone.checked_div(1000).unwrap_or(0)).unwrap_or(0);
-        self.pst = match self.pst {
-            Pst::Off => return,
-            Pst::Away(target) if self.drive.position() <= target => {
-                self.reached(percent);
-                let pause = u32::from(self.store.get(at::PST_PAUSE));
-                Pst::Pause(pause.saturating_mul(1000))
-            }
-            Pst::Away(target) => {
-                self.reached(percent);
-                Pst::Away(target)
-            }
-            Pst::Pause(0) => {
-                self.test_tenths = 0;
-                Pst::Back
-            }
-            Pst::Pause(left) => Pst::Pause(left.saturating_sub(STEP_MS)),
-            Pst::Back if self.drive.is_open() => {
-                self.returned(0);
-                return self.end_test(1, 1);
-            }
-            Pst::Back => {
-                self.returned(percent);
-                Pst::Back
-            }
-        };
-    }
-
-    /// Notes the time of every percent that was passed on the way.
-    fn reached(&mut self, percent: usize) {
-        while self.test.away.len() <= percent.min(50) {
-            self.test.away.push(self.test_tenths);
-        }
-    }
-
-    /// Notes the time of every percent that was passed on the way back; the way begins at the far
-    /// end, and the file at 1 %.
-    fn returned(&mut self, percent: usize) {
-        for time in self.test.back.iter_mut().skip(percent) {
-            if *time == 0 {
-                *time = self.test_tenths;
-            }
-        }
-    }
-
-    fn end_test(&mut self, result: u16, status: u16) {
-        self.store.set(at::PST_STATUS, status);
-        self.store
-            .long(at::PST_STATUS.saturating_add(1), self.test.reset);
-        self.test.result = result;
-        self.test.status = status;
-        let baseline = self.command == command::BASELINE_PST;
-        let test = core::mem::take(&mut self.test);
-        self.history.test(&test, self.wall, baseline);
-        if matches!(self.command, command::PST | command::BASELINE_PST) {
-            self.command = command::NONE;
-        }
-        self.pst = Pst::Off;
-    }
-
-    /// Begins a partial stroke test, if the set-up allows it and the valve is open.
-    pub(super) fn begin_test(&mut self) {
-        let allowed = self.is_v2()
-            && self.store.get(at::EFS_INPUT_MODE) == 0
-            && self.store.get(at::INTERLOCK_MODE) == 1;
-        if allowed && self.pst == Pst::Off && self.drive.is_open() {
-            let percent = self.store.get(at::PST_TRAVEL);
-            let travel = u32::from(percent).saturating_mul(1000);
-            self.pst = Pst::Away(drive::OPEN.saturating_sub(travel));
-            self.test = history::Partial {
-                back: vec![0; usize::from(percent.min(50))],
-                travel: percent,
-                ..history::Partial::default()
-            };
-            self.test_tenths = 0;
-        } else if matches!(self.command, command::PST | command::BASELINE_PST) {
-            self.command = command::NONE;
-        }
     }
 }
 

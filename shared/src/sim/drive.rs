@@ -77,6 +77,8 @@ pub(super) struct Drive {
     /// The mains voltage is low, or too low to run.
     pub low_mains: bool,
     pub no_mains: bool,
+    /// How many times slower than usual it runs.
+    pub slow: u32,
     /// Warning of torque in closing direction, until the next start.
     pub hi_torque: bool,
     pub cycles: u32,
@@ -95,6 +97,7 @@ impl Drive {
             load: 0,
             low_mains: false,
             no_mains: false,
+            slow: 1,
             hi_torque: false,
             cycles: 0,
             run_ms: 0,
@@ -143,7 +146,11 @@ impl Drive {
             return Done::default();
         }
         self.run_ms = self.run_ms.saturating_add(ms.into());
-        let travel = |full: u32| OPEN.saturating_mul(ms).checked_div(full).unwrap_or(0);
+        let slow = self.slow;
+        let travel = |full: u32| {
+            let full = full.saturating_mul(slow);
+            OPEN.saturating_mul(ms).checked_div(full).unwrap_or(0)
+        };
         let target = match demand {
             Demand::Reach(to) | Demand::Follow(to) => Some(to.min(OPEN)),
             _ => None,

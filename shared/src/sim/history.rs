@@ -156,11 +156,13 @@ fn partial(test: &Partial, wall: u64) -> Vec<u16> {
     words.extend(time(wall));
     words.extend([30, 27, 44, 29, 400]);
     let last = |times: &[u16]| times.iter().copied().max().unwrap_or(0);
+    // The time to the travel that was set; what came behind is over-travel.
+    let there = test.away.get(usize::from(test.travel)).copied();
     words.extend([
         test.result,
         // Close PST: it starts from 100 %.
         0,
-        last(&test.away),
+        there.unwrap_or_else(|| last(&test.away)),
         last(&test.back),
         test.over,
         test.travel,
@@ -179,9 +181,12 @@ fn earlier(travel: u16, each: u16, result: u16, status: u16) -> Partial {
             .map(|percent| delay.saturating_add(percent.saturating_mul(each)))
             .collect()
     };
+    // The way back begins at the far end.
+    let mut back = run(1, 2);
+    back.reverse();
     Partial {
         away: run(0, 4),
-        back: run(1, 2),
+        back,
         result,
         status,
         reset: 0,
@@ -359,6 +364,28 @@ impl History {
         // Behind the reference.
         list.insert(1.min(list.len()), curve);
         list.truncate(FULL_KEPT.saturating_add(1));
+    }
+
+    /// T-PST and T-RET of the reference of partial strokes, and its travel in percent.
+    pub(super) fn reference_times(&self) -> ([u16; 2], u16) {
+        let word = |at: usize| {
+            let reference = self.partial.first();
+            reference
+                .and_then(|words| words.get(at))
+                .copied()
+                .unwrap_or(0)
+        };
+        ([word(110), word(111)], word(113))
+    }
+
+    /// Keeps an emergency stroke: 101 times, behind the reference.
+    pub(super) fn emergency(&mut self, times: &[u16], opening: bool, wall: u64) {
+        let mut words: Vec<u16> = times.to_vec();
+        words.resize(101, 0);
+        words.extend(time(wall));
+        words.extend([31, 28, 46, 30, 400, 0, u16::from(opening)]);
+        self.emergency.insert(1.min(self.emergency.len()), words);
+        self.emergency.truncate(PARTIAL_KEPT.saturating_add(1));
     }
 
     /// Keeps a partial stroke.

@@ -56,15 +56,18 @@ impl Icon3000 {
         self.warnings.publish(store, at::WARNING_LOG);
         store.set(at::COMMAND_BITS, self.bits);
         store.set(at::COMMAND, self.command);
-        let [of_faults, alarms_1, alarms_2] = self.fault_bits();
+        let [of_faults, alarms_1, alarms_2, alarms_3] = self.fault_bits();
         let store = &mut self.store;
-        let warnings =
-            u16::from(self.drive.hi_torque) << 1 | u16::from(self.drive.low_mains) << 3 | of_faults;
+        let warnings = u16::from(self.drive.hi_torque) << 1
+            | u16::from(self.drive.low_mains) << 3
+            | of_faults
+            | self.test_warnings;
         // Bit 15 is the general warning.
         let any = u16::from(warnings != 0) << 15;
         store.set(at::WARNINGS, warnings | any);
         store.set(at::ALARMS_1, u16::from(self.drive.no_mains) << 8 | alarms_1);
         store.set(at::ALARMS_1.saturating_add(1), alarms_2);
+        store.set(at::ALARMS_3, alarms_3);
         store.set(at::MOTOR_ALARMS, self.alarms.count(&[2, 3]));
         store.set(
             at::MOTOR_ALARMS.saturating_add(1),
@@ -111,9 +114,10 @@ impl Icon3000 {
         );
         let din = self.conditions(at::DIN_FUNCTION, at::DIN_POSITION, 6);
         let interlock = self.store.get(at::INTERLOCK_COMMANDS);
-        let [warnings, alarms_1, alarms_2] = self.fault_bits();
-        let has_alarm = drive.no_mains || alarms_1 != 0 || alarms_2 != 0;
-        let has_warning = drive.hi_torque || drive.low_mains || warnings != 0;
+        let [warnings, alarms_1, alarms_2, alarms_3] = self.fault_bits();
+        let has_alarm = drive.no_mains || (alarms_1 | alarms_2 | alarms_3) != 0;
+        let has_warning =
+            drive.hi_torque || drive.low_mains || (warnings | self.test_warnings) != 0;
         let status_1 = bits([
             drive.is_closed(),
             drive.is_open(),
@@ -149,7 +153,7 @@ impl Icon3000 {
         let percent = position.checked_div(1000).unwrap_or(0);
         let limit = |store: &Store, at: u16| u32::from(store.get(at));
         let status_3 = bits([
-            false,
+            self.is_v2() && self.store.get(at::PST_STATUS) & 1 << 4 != 0,
             self.is_v2() && self.store.get(at::PST_STATUS) & 1 != 0,
             false,
             true,

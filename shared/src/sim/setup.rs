@@ -106,7 +106,7 @@ fn identity(store: &mut Store, model: Model, tag: &str) {
 
 /// The set-up of an ICON3000v2.
 fn version_2(store: &mut Store) {
-    let settings: [(u16, &[u16]); 16] = [
+    let settings: [(u16, &[u16]); 20] = [
         // Open limit, close limit, position at least and at most, closing, opening, running, alarm.
         (at::RELAY_FUNCTION, &[0, 1, 2, 3, 4, 5, 6, 26]),
         (at::RELAY_CONTACT, &[1; 8]),
@@ -123,6 +123,11 @@ fn version_2(store: &mut Store) {
         (at::OPEN_TORQUE, &[85]),
         (at::CLOSE_TORQUE, &[90]),
         (at::PST_TRAVEL, &[15]),
+        (at::MAX_T_PST, &[150]),
+        (at::MAX_T_RET, &[150]),
+        (at::MAX_OV_TR, &[5]),
+        // Channel 2 is not connected any more; its counters stand still (order as of channel 1).
+        (at::COUNTERS_2, &[4321, 1234, 7, 3, 2, 1]),
         (at::FAIL_SAFE_ENABLED, &[1]),
     ];
     for (address, words) in settings {

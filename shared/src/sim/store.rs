@@ -30,6 +30,7 @@ pub(super) mod at {
     pub(in crate::sim) const AUX_BITS: u16 = 3013;
     pub(in crate::sim) const CLEAR_LOG: u16 = 3014;
     pub(in crate::sim) const RESET: u16 = 3015;
+    pub(in crate::sim) const ALARMS_3: u16 = 3016;
     pub(in crate::sim) const DEAD_BAND: u16 = 3017;
     pub(in crate::sim) const MOTION_INHIBIT: u16 = 3018;
     pub(in crate::sim) const FAIL_SAFE_ACTION: u16 = 3019;
@@ -101,13 +102,17 @@ pub(super) mod at {
     pub(in crate::sim) const BATTERY: u16 = 3529;
     pub(in crate::sim) const MODBUS_STATUS: u16 = 3530;
     pub(in crate::sim) const COUNTERS: u16 = 3531;
+    pub(in crate::sim) const COUNTERS_2: u16 = 3537;
     pub(in crate::sim) const WINK: u16 = 3555;
     pub(in crate::sim) const ENCODER_LIMITS: u16 = 3558;
     pub(in crate::sim) const RELAY_FUNCTION: u16 = 3580;
     pub(in crate::sim) const RELAY_CONTACT: u16 = 3588;
     pub(in crate::sim) const RELAY_POSITION: u16 = 3596;
     pub(in crate::sim) const PST_TRAVEL: u16 = 3615;
+    pub(in crate::sim) const MAX_T_PST: u16 = 3616;
     pub(in crate::sim) const PST_PAUSE: u16 = 3617;
+    pub(in crate::sim) const MAX_T_RET: u16 = 3618;
+    pub(in crate::sim) const MAX_OV_TR: u16 = 3619;
     pub(in crate::sim) const NEXT_PST: u16 = 3620;
     pub(in crate::sim) const DIN_FUNCTION: u16 = 3622;
     pub(in crate::sim) const DIN_POSITION: u16 = 3628;

@@ -151,7 +151,10 @@ impl Icon3000 {
                 self.alarms.clear();
                 self.warnings.clear();
             }
-            at::RESET if value == 1 => self.drive.hi_torque = false,
+            at::RESET if value == 1 => {
+                self.drive.hi_torque = false;
+                self.test_warnings = 0;
+            }
             // These read as 0 whatever is written.
             at::CLEAR_LOG | at::RESET | at::WINK | at::SET_PROFILE | at::CLEAR_RECENT => {}
             at::DISPLAY_PASSWORD..=at::DISPLAY_PASSWORD_END => {}

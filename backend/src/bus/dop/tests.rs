@@ -12,6 +12,7 @@ fn unit() -> DopUnit {
         bus: 0,
         unit: 4,
         description: String::new(),
+        faults: Vec::new(),
         profile: Some(crate::sim::dop_profile()),
         target: None,
     };

@@ -88,6 +88,7 @@ fn device(unit: u8, kind: Device, profile: Option<&str>) -> DeviceConfig {
         bus: 0,
         unit,
         description: String::new(),
+        faults: Vec::new(),
         profile: profile.map(|json| Arc::new(Profile::from_json(json).unwrap())),
         target: None,
     }

@@ -134,6 +134,42 @@ fn a_refused_request_is_asked_for_in_parts() {
     assert_eq!(response, "9402");
 }
 
+/// Table 50: a busy device is asked again later, three times; a request for several files is not
+/// taken apart for it.
+#[tokio::test(start_paused = true)]
+async fn a_busy_device_is_asked_again() {
+    let (out, mut from) = outlet();
+    let mut unit = unit();
+    let steps = vec![file(5300, 0, 16), file(5301, 0, 16)];
+    unit.ask(CLIENT, read(steps.clone()), out.clone());
+    let busy = report(Outcome::Exception, None, Some(6));
+    for _ in 0..3 {
+        assert_eq!(step(&mut unit, &busy).len(), 16);
+        assert!(unit.take().is_none(), "not at once");
+        let wait = unit.due(Instant::now()).unwrap() - Instant::now();
+        assert_eq!(wait, Duration::from_millis(200));
+        tokio::time::advance(wait).await;
+    }
+    assert!(news(&mut from).is_empty());
+    assert_eq!(step(&mut unit, &busy).len(), 16);
+    let [
+        IconNews::Exchange { response, .. },
+        IconNews::Done {
+            ok: 0, failed: 1, ..
+        },
+    ] = &news(&mut from)[..]
+    else {
+        panic!("one failure");
+    };
+    assert_eq!(response, "9406");
+    // Who cancels is not kept waiting.
+    unit.ask(CLIENT, read(steps), out);
+    let query = unit.take().unwrap();
+    unit.ask(CLIENT, IconAsk::Cancel { id: 7 }, outlet().0);
+    unit.reply(&query, &busy, Micros::new(1));
+    assert!(unit.take().is_none() && unit.due(Instant::now()).is_none());
+}
+
 #[test]
 fn a_silent_device_is_given_up() {
     let (out, mut from) = outlet();

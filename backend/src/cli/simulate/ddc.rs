@@ -42,10 +42,6 @@ pub(super) struct NetworkArgs {
     /// RTU or ASCII.
     #[arg(long, value_enum, default_value_t = FramingArg::Rtu, requires = "ddc100")]
     framing: FramingArg,
-    /// What is wrong, or with its time in seconds: `break-3 from 60 to 120 every 240`. May be given
-    /// several times.
-    #[arg(long, long_help = fault_help(), value_name = "FAULT", value_parser = str::parse::<Fault>, requires = "ddc100")]
-    fault: Vec<Fault>,
     /// Take the time of the characters too, as on a real cable; for pseudo terminals.
     #[arg(long, requires = "ddc100")]
     paced: bool,
@@ -58,12 +54,12 @@ pub(super) struct NetworkArgs {
 }
 
 /// Every name of a fault.
-fn fault_help() -> String {
+pub(super) fn fault_help() -> String {
     format!(
-        "What is wrong: `break-3` or `short-3` (behind the third unit, 0 before the first), `port-2`, \
+        "with a DDC-100 network `break-3` or `short-3` (behind the third unit, 0 before the first), `port-2`, \
          or one of these with the address of a unit, as `off-7`: {}. A number in brackets may be \
          left out: `user-fault-3-7` is user fault 3 of unit 7, `user-fault-7` its first. With its \
-         time in seconds: `break-3 from 60 to 120 every 240`. May be given several times",
+         time in seconds: `break-3 from 60 to 120 every 240`",
         UnitTrouble::names()
     )
 }
@@ -119,7 +115,12 @@ fn units(text: &str) -> Result<Units, String> {
 }
 
 /// Runs the network on these ports until it is asked to end.
-pub(super) async fn run(args: &NetworkArgs, paths: &[String], baud: u32) -> ExitCode {
+pub(super) async fn run(
+    args: &NetworkArgs,
+    faults: &[Fault],
+    paths: &[String],
+    baud: u32,
+) -> ExitCode {
     let shape = match args.shape {
         Some(ShapeArg::Loop) => DdcShape::Loop,
         Some(ShapeArg::SingleEnded) => DdcShape::SingleEnded,
@@ -138,11 +139,12 @@ pub(super) async fn run(args: &NetworkArgs, paths: &[String], baud: u32) -> Exit
             bus: 0,
             unit,
             description: String::new(),
+            faults: Vec::new(),
             profile: None,
             target: None,
         })
         .collect();
-    let network = match Network::new(shape, &devices, &args.fault, Clock::start()) {
+    let network = match Network::new(shape, &devices, faults, Clock::start()) {
         Ok(network) => network,
         Err(fault) => {
             let count = devices.len();

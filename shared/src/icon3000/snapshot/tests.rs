@@ -1,5 +1,7 @@
 //! Snapshots, their files and what changed.
 
+mod changes;
+
 use super::*;
 use crate::icon3000::plan::FileRead;
 
