@@ -10,8 +10,7 @@ pub use member::{Counted, Reach, Unit, reach};
 use shared::capture::Micros;
 use shared::ddc100::diagnosis::Diagnosis;
 use shared::ddc100::{FaultTable, HostPort, counters};
-use shared::device::Device;
-use shared::proto::{DdcNews, DdcShape, DdcUnit, LineState, Outcome};
+use shared::proto::{DdcNews, DdcShape, LineState, Outcome};
 
 use super::findings::findings;
 use super::log::Log;

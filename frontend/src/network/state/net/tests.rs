@@ -1,4 +1,6 @@
 use super::*;
+use shared::device::Device;
+use shared::proto::DdcUnit;
 
 /// A loop of so many units of the UEC-3-DDC, nothing tried yet.
 pub(crate) fn network(units: u8, shape: DdcShape, ports: usize) -> Net {
