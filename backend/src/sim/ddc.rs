@@ -399,6 +399,7 @@ mod tests {
                 bus: 0,
                 unit: 1,
                 description: String::new(),
+                faults: Vec::new(),
                 profile: None,
                 target: None,
             };

@@ -18,7 +18,6 @@ use crate::erased::{effect, memo};
 use crate::format::{decode, encode};
 use crate::guest::Guest;
 use crate::state::wire;
-use crate::task::now_ms;
 
 /// How long news are gathered before the screen is drawn anew.
 const GATHER: Duration = Duration::from_millis(200);
@@ -337,7 +336,7 @@ impl Store {
     reason = "a positive number of milliseconds, far below 2^52"
 )]
 fn wall_ms() -> u64 {
-    now_ms().max(0.0) as u64
+    js_sys::Date::now().max(0.0) as u64
 }
 
 fn list_key(bus: &str) -> String {

@@ -58,7 +58,12 @@ impl<'a> Cards<'a> {
                 |at| format!("{} ago", age(self.now_us.saturating_sub(at))),
             );
             match groups.last_mut().filter(|(_, t)| *t == text) {
-                Some((names, _)) => names.push_str(&format!(", {number}")),
+                Some((names, _)) => {
+                    if !names.contains(',') {
+                        *names = names.replace("register", "registers");
+                    }
+                    names.push_str(&format!(", {number}"));
+                }
                 None => groups.push((format!("register {number}"), text)),
             }
         }
@@ -134,7 +139,9 @@ impl<'a> Cards<'a> {
             let row = device.map().and_then(|m| m.row_at(Table::Holding, address));
             row.is_some_and(|row| row.kind != Kind::Reserved)
         };
-        let numbers: Vec<u16> = (3..=8).filter(has).collect();
+        // Register 2 is for commands; it is shown once it was read with all others.
+        let argument = (2..3).filter(|n| self.unit.read_at(*n).is_some());
+        let numbers: Vec<u16> = argument.chain((3..=8).filter(has)).collect();
         self.open(html, "analog", "Analog values", &numbers);
         let scaling = tags.scaling(unit, 8);
         html.open("label", &[("class", "choice")]).text("Scale ");
@@ -174,14 +181,6 @@ impl<'a> Cards<'a> {
             html.open("td", &[("class", "num quiet")]);
             html.node("code", "", &register).close("td");
             html.open("th", &[("scope", "row")]).text(value.row.label);
-            let own = tags.scaling(unit, number);
-            if value.scaled.is_some() && own != scaling {
-                let text = format!("scaled {} by the tag list", own.key());
-                html.node("p", "quiet net-small", &text);
-            }
-            if !value.row.note.is_empty() {
-                html.node("p", "quiet net-small", value.row.note);
-            }
             html.close("th");
             html.node("td", "num quiet mono", &value.raw.to_string());
             html.open("td", &[("class", "num analog-value")]);
@@ -194,6 +193,22 @@ impl<'a> Cards<'a> {
                 bar(html, u32::from(tenths));
             }
             html.close("td").close("tr");
+            let mut notes: Vec<String> = Vec::new();
+            let own = tags.scaling(unit, number);
+            if value.scaled.is_some() && own != scaling {
+                notes.push(format!("Scaled {} by the tag list.", own.key()));
+            }
+            if !value.row.note.is_empty() {
+                notes.push(value.row.note.to_owned());
+            }
+            if !notes.is_empty() {
+                html.open("tr", &[("class", "analog-note")]);
+                html.node("td", "", "")
+                    .open("td", &[("colspan", "3")])
+                    .node("p", "quiet net-small", &notes.join(" "))
+                    .close("td")
+                    .close("tr");
+            }
         }
         html.close("tbody").close("table");
         html.close("section");
@@ -348,7 +363,7 @@ mod tests {
         );
         assert!(html.contains("40") && !html.contains("title="));
         // 30 of 255 is 11.8 %.
-        assert!(html.contains("11.8 %") && html.contains("scaled 0-255 by the tag list"));
+        assert!(html.contains("11.8 %") && html.contains("Scaled 0-255 by the tag list"));
         assert!(html.contains("register 7: not read yet"));
         let html = drawn(|html| Cards::of(&net, unit, 8_000_000, true).analog(html, &view, &tags));
         assert!(html.contains("unit-card stale") && !html.contains("bar-fill"));

@@ -114,7 +114,7 @@ pub fn frame(html: &mut Markup, parts: &[Part]) {
         return;
     }
     html.open("div", &[("data-testid", "would-be")]);
-    html.node("h4", "", "What the frame would be");
+    html.node("h3", "", "What the frame would be");
     html.node(
         "p",
         "quiet net-small",

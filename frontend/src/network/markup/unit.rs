@@ -528,7 +528,7 @@ mod tests {
         assert!(html.contains("No fault bit is set."), "{html}");
         assert!(html.contains("data-testid=\"old-fault\" data-key=\"user_fault_2\""));
         assert!(html.contains("36 s ago") && html.contains("they do not count"));
-        assert!(html.contains("register 9: 1.0 s ago; register 10, 14, 15: 36 s ago"));
+        assert!(html.contains("register 9: 1.0 s ago; registers 10, 14, 15: 36 s ago"));
     }
 
     #[test]
