@@ -33,8 +33,8 @@ pub(super) struct PollArgs {
     #[arg(long)]
     bus: Option<String>,
     /// End after so many passes; 0 goes on for ever. After two, each unit was tried on each port;
-    /// the third one bears that out.
-    #[arg(long, default_value_t = 3)]
+    /// two more bear that out.
+    #[arg(long, default_value_t = 4)]
     passes: u64,
 }
 
