@@ -304,6 +304,7 @@ mod tests {
             bus: 0,
             unit,
             description: String::new(),
+            faults: Vec::new(),
             profile: None,
             target: None,
         });
