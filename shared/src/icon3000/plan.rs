@@ -36,6 +36,12 @@ impl Span {
         u32::from(self.start).saturating_add(self.count.into())
     }
 
+    /// Cut where the records of a file must end.
+    fn fitted(self) -> Self {
+        let left = RECORDS.saturating_sub(self.start);
+        Self::new(self.file, self.start, self.count.min(left))
+    }
+
     /// Data bytes in a response.
     fn data(self) -> usize {
         usize::from(self.count).saturating_mul(2).saturating_add(2)
@@ -164,4 +170,44 @@ pub fn plan(spans: impl IntoIterator<Item = Span>) -> Vec<FileRead> {
     }
     reads.extend(FileRead::new(open));
     reads
+}
+
+/// Reads a file of which nothing says how many records it has, as file 5 (reading E69).
+///
+/// It asks for as much as one answer holds. Too long a stretch is refused with exception 02: then
+/// half of it is asked for, down to one record. What is answered is gone on behind, until a single
+/// record is refused: there the file ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Probe(Span);
+
+impl Probe {
+    /// A file of which the records before `start` are known already; 0 for a new one.
+    #[must_use]
+    pub fn new(file: u16, start: u16) -> Self {
+        Self(Span::new(file, start, MOST_RECORDS).fitted())
+    }
+
+    /// What to ask for; `None` if the end was found.
+    #[must_use]
+    pub fn next(self) -> Option<Span> {
+        (self.0.count > 0).then_some(self.0)
+    }
+
+    /// What was asked for was answered.
+    pub fn answered(&mut self) {
+        let Span { file, start, count } = self.0;
+        self.0 = Span::new(file, start.saturating_add(count), count).fitted();
+    }
+
+    /// What was asked for was refused with exception 02. Any other failure says nothing of the
+    /// length: then the probe is over.
+    pub const fn refused(&mut self) {
+        self.0.count >>= 1;
+    }
+
+    /// Records that are known to be there, all from 0.
+    #[must_use]
+    pub const fn found(self) -> u16 {
+        self.0.start
+    }
 }

@@ -5,7 +5,7 @@ mod device;
 mod views;
 
 use super::model::{FILES, File, Numbering};
-use super::plan::{FileRead, MOST_RECORDS, Span, plan};
+use super::plan::{FileRead, MOST_RECORDS, Probe, Span, plan};
 use super::read::Log;
 use super::records::{Files, Records};
 
@@ -246,4 +246,50 @@ fn odd_logs_keep_their_values_and_say_so() {
     records.put(0, [1]);
     let log = Log::read(2, &records).unwrap();
     assert!(log.problems[0].text.contains("announces 1 only"));
+}
+
+/// A file of so many records, probed: what was asked for, as first record and count, and how many
+/// records were found.
+fn probed(records: u32) -> (Vec<(u16, u16)>, u16) {
+    let mut probe = Probe::new(5, 0);
+    let mut asked = Vec::new();
+    while let Some(span) = probe.next() {
+        asked.push((span.start, span.count));
+        if span.end() <= records {
+            probe.answered();
+        } else {
+            probe.refused();
+        }
+    }
+    (asked, probe.found())
+}
+
+/// A file of 64 records, by hand: 121 and 60 halve to 60, 30, 15, 7, 3, 1 (readings E69, E80).
+#[test]
+fn a_file_of_unknown_length_is_probed_to_its_end() {
+    let (asked, found) = probed(64);
+    let by_hand = [
+        (0, 121),
+        (0, 60),
+        (60, 60),
+        (60, 30),
+        (60, 15),
+        (60, 7),
+        (60, 3),
+        (63, 3),
+        (63, 1),
+        (64, 1),
+    ];
+    assert_eq!((asked.as_slice(), found), (&by_hand[..], 64));
+    // Nothing there: seven requests say so.
+    let (asked, found) = probed(0);
+    let counts: Vec<_> = asked.iter().map(|(_, count)| *count).collect();
+    assert_eq!((counts, found), (vec![121, 60, 30, 15, 7, 3, 1], 0));
+    for records in [1_u16, 2, 59, 60, 61, 120, 121, 122, 242, 9999, 10_000] {
+        assert_eq!(probed(records.into()).1, records);
+    }
+    // 10000 = 82 x 121 + 78, and no record beyond 9999 is asked for.
+    let (asked, _) = probed(10_000);
+    assert_eq!((asked.len(), asked.last()), (83, Some(&(9922, 78))));
+    assert_eq!(Probe::new(5, 40).next(), Some(Span::new(5, 40, 121)));
 }
