@@ -47,6 +47,8 @@ pub struct Site {
     pub broken: Option<(Wanted, u64)>,
     /// How the last read ended, in words.
     pub last: String,
+    /// True while it is asked whether to save what is not whole.
+    pub saving: bool,
 }
 
 /// The store.
@@ -111,8 +113,7 @@ impl Store {
         effect(move || {
             let tag = store.tag.get();
             if store.site.with_untracked(|s| s.dossier.tag != tag) {
-                store.site.set(kept(&tag));
-                store.greet();
+                store.visit(&tag);
             }
         });
         guest.listen(move |text| store.hear(text));
@@ -181,20 +182,26 @@ impl Store {
         })
     }
 
+    /// Turns to a device on the line, whatever the address says, and keeps what is known of the one
+    /// before.
+    pub fn visit(self, tag: &str) {
+        if self.site.with_untracked(|s| s.dossier.tag != tag) {
+            self.keep();
+            self.site.set(kept(tag));
+            self.greet();
+        }
+    }
+
     fn hear(self, text: &str) {
-        // The program may be closed by now.
-        let Some(tag) = self.tag.try_get_untracked() else {
-            return;
-        };
         if let Some(news) = wire::icon::read(text) {
-            if *device_of(&news) == tag {
-                let mut next = None;
-                let now = self.guest.now_us();
-                self.site
-                    .update(|site| next = site.hear(&news, self.next, now));
-                if let Some(ask) = next {
-                    self.send(&ask);
-                }
+            let now = self.guest.now_us();
+            // The program may be closed by now.
+            let next = self.site.try_update(|site| {
+                let ours = *device_of(&news) == site.dossier.tag;
+                ours.then(|| site.hear(&news, self.next, now)).flatten()
+            });
+            if let Some(ask) = next.flatten() {
+                self.send(&ask);
             }
         } else if let Ok(hello @ ToPage::Hello { .. }) = wire::read(text) {
             self.greeting.set_value(Some(hello));
@@ -246,6 +253,9 @@ impl Store {
 
     /// Reads all of these anew.
     pub fn read(self, wanted: Wanted) {
+        if !wanted.quiet {
+            self.site.update(|site| site.broken = None);
+        }
         self.begin(wanted, self.guest.now_us());
     }
 
@@ -258,28 +268,38 @@ impl Store {
     pub fn resume(self) {
         let broken = self.site.try_update(|site| site.broken.take()).flatten();
         if let Some((wanted, since)) = broken {
-            // What failed then is tried again.
-            self.site.update(|site| site.dossier.failed.clear());
+            // What failed then is tried again, and is on the list until it is answered.
+            self.site.update(|site| {
+                let failed = site.dossier.failed.values_mut();
+                failed.for_each(|failure| failure.again = true);
+            });
             self.begin(wanted, since);
         }
     }
 
     fn begin(self, wanted: Wanted, since: u64) {
-        if self.site.with_untracked(|s| s.job.is_some()) || !self.online.get_untracked() {
+        if !self.online.get_untracked() {
             return;
         }
+        let under_way = |s: &Site| s.job.as_ref().map(|job| (job.id, job.wanted.quiet));
+        match self.site.with_untracked(under_way) {
+            Some((id, true)) if !wanted.quiet => self.send(&IconAsk::Cancel { id }),
+            Some(_) => return,
+            None => {}
+        }
         let (id, now) = (self.next_id(), self.guest.now_us());
-        let mut steps = Vec::new();
-        self.site.update(|site| {
+        let ask = self.site.try_update(|site| {
+            site.saving = false;
             site.job = Job::new(id, wanted, &site.dossier, since, now);
-            site.broken = None;
-            if let Some(job) = &site.job {
-                steps = job.steps().to_vec();
-            }
+            let job = site.job.as_ref()?;
+            Some(IconAsk::Read {
+                id,
+                device: site.dossier.tag.clone(),
+                steps: job.steps().to_vec(),
+            })
         });
-        if !steps.is_empty() {
-            let device = self.tag.get_untracked();
-            self.send(&IconAsk::Read { id, device, steps });
+        if let Some(ask) = ask.flatten() {
+            self.send(&ask);
         }
     }
 
@@ -328,10 +348,10 @@ impl Store {
         let site = self.site.try_update_untracked(core::mem::take);
         let saved = self.saved.try_get_untracked().unwrap_or_default();
         let mut site = site.unwrap_or_default();
-        if let Some(job) = site.job.take() {
+        if let Some(job) = &site.job {
             self.send(&IconAsk::Cancel { id: job.id });
-            site.broken = Some((job.wanted.clone(), job.since()));
         }
+        site.stop("");
         KEPT.with_borrow_mut(|kept| {
             kept.saved = saved;
             if !site.dossier.tag.is_empty() {
@@ -343,6 +363,12 @@ impl Store {
 }
 
 impl Site {
+    /// What is being read because somebody asked for it.
+    #[must_use]
+    pub fn shown_job(&self) -> Option<&Job> {
+        self.job.as_ref().filter(|job| !job.wanted.quiet)
+    }
+
     /// The connection is gone: nothing of what was asked comes back.
     pub fn lost(&mut self) {
         self.stop("The connection was lost.");
@@ -350,7 +376,7 @@ impl Site {
 
     /// Ends the read under way, and says why; it can be gone on with.
     fn stop(&mut self, why: &str) {
-        if let Some(job) = self.job.take() {
+        if let Some(job) = self.job.take().filter(|job| !job.wanted.quiet) {
             self.broken = Some((job.wanted.clone(), job.since()));
             why.clone_into(&mut self.last);
         }
@@ -386,7 +412,7 @@ impl Site {
                 steps: job.steps().to_vec(),
             });
         }
-        let job = self.job.take()?;
+        let job = self.job.take().filter(|job| !job.wanted.quiet)?;
         let requests = crate::format::count(u64::from(job.done), "request");
         let whole = job.is_whole(&self.dossier);
         self.last = if job.cancelled {

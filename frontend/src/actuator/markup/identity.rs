@@ -1,17 +1,23 @@
 //! Who the device is: what function 17, the registers and the cards say, and whether they agree.
 
+use shared::address::{Address, Table};
 use shared::icon3000::identity::{Fact, REPORT, Report, detect, facts};
 use shared::icon3000::model::READINGS;
-use shared::proto::Outcome;
+use shared::map::row::Row;
 use shared::render::Spaced;
 
+use super::tools::{read_at, when};
 use super::{heading, reading};
 use crate::actuator::state::dossier::{Dossier, Subject};
 use crate::actuator::state::saved::model;
 use crate::markup::Markup;
 
+/// Registers that are asked for one by one, because whether they answer tells the model: one beyond
+/// 3473, and one beyond 21 (reading E84).
+pub const PROBES: [u16; 2] = [3480, 44];
+
 /// Everything about who the device is.
-pub fn identity(html: &mut Markup, dossier: &Dossier) {
+pub fn identity(html: &mut Markup, dossier: &Dossier, now: i64) {
     let pdu = dossier.identity.as_ref().map(|a| a.pdu.as_slice());
     let report = pdu.and_then(Report::of_pdu);
     which(html, dossier, report.as_ref());
@@ -25,9 +31,14 @@ pub fn identity(html: &mut Markup, dossier: &Dossier) {
         html.open("p", &[("class", "empty"), ("data-testid", "icon-nothing")]);
         html.text("Nothing was read yet.").close("p");
     } else {
+        let address = |f: &&Fact| f.from.strip_prefix("HR ")?.parse().ok();
+        let addresses: Vec<u16> = told.iter().filter_map(address).collect();
+        let told_of =
+            |row: &Row| row.table == Table::Holding && addresses.contains(&row.address.get());
+        read_at(html, dossier, &dossier.rows(&told_of), now);
         table(html, &told);
     }
-    server_id(html, dossier, report.as_ref());
+    server_id(html, dossier, report.as_ref(), now);
     heading(html, "Card reports", "files 5300 to 5304, table 49");
     if cards.is_empty() {
         html.node("p", "quiet", "None was read.");
@@ -47,11 +58,18 @@ pub fn identity(html: &mut Markup, dossier: &Dossier) {
 
 /// Which model it is, and why.
 fn which(html: &mut Markup, dossier: &Dossier, report: Option<&Report>) {
+    // A register that answers is known; one that is not there is refused with exception 02.
     let refused = |start: u16| {
-        let failure = dossier.failed.get(&Subject::Block(3, start))?;
-        Some(failure.outcome == Outcome::Exception)
+        let known = dossier.image.cell(Table::Holding, Address::new(start));
+        let failure = dossier.failed.get(&Subject::Block(3, start));
+        match (known, failure) {
+            (Some(_), _) => Some(false),
+            (_, Some(failure)) if failure.code == 2 => Some(true),
+            _ => None,
+        }
     };
-    let guess = detect(&dossier.image, report, refused(3480), refused(3000));
+    let [beyond_3473, beyond_21] = PROBES.map(refused);
+    let guess = detect(&dossier.image, report, beyond_3473, beyond_21);
     html.open("p", &[("class", "icon-lead"), ("data-testid", "model")]);
     match guess.model {
         Some(model) => {
@@ -120,12 +138,13 @@ fn table(html: &mut Markup, facts: &[&Fact]) {
 }
 
 /// The answer to function 17 as it came.
-fn server_id(html: &mut Markup, dossier: &Dossier, report: Option<&Report>) {
+fn server_id(html: &mut Markup, dossier: &Dossier, report: Option<&Report>, now: i64) {
     heading(html, "Report of server ID", "FC 17, section 8.10");
     let Some(answer) = &dossier.identity else {
         html.node("p", "quiet", "It was not read.");
         return;
     };
+    when(html, dossier, Some(answer.at), now);
     html.open("p", &[("data-testid", "report")]);
     match report {
         Some(report) => {
@@ -175,7 +194,7 @@ fn card(html: &mut Markup, name: &str, facts: &[&Fact]) {
     for fact in facts {
         html.open("div", &[("data-key", fact.key)]);
         html.node("dt", "", fact.label);
-        html.open("dd", &[("title", &fact.source.to_string())]);
+        html.open("dd", &[]);
         html.node("b", "", &fact.value).close("dd").close("div");
     }
     html.close("dl").close("section");
@@ -189,7 +208,7 @@ mod tests {
 
     fn drawn(dossier: &Dossier) -> String {
         let mut html = Markup::new();
-        identity(&mut html, dossier);
+        identity(&mut html, dossier, 0);
         html.finish()
     }
 
@@ -235,6 +254,39 @@ mod tests {
         assert_eq!(
             html.matches("says otherwise elsewhere").count(),
             2,
+            "{html}"
+        );
+    }
+
+    /// Reading E84: HR 44 came with the ICON3000, HR 3480 with the v2. Only exception 02 says that a
+    /// register is not there; silence says nothing.
+    #[test]
+    fn what_is_refused_tells_the_model() {
+        use shared::proto::{Block, IconStep, Outcome, TableName};
+        let fail = |dossier: &mut Dossier, start, outcome, code| {
+            let table = TableName::Holding;
+            let step = IconStep::Block(Block {
+                table,
+                start,
+                count: 1,
+            });
+            dossier.fail(step, outcome, code, "", 1);
+        };
+        let not_known = "Which model it is, is not known";
+        let mut dossier = Dossier::new("x", shared::device::Device::Icon2000v4);
+        for start in PROBES {
+            fail(&mut dossier, start, Outcome::Silence, 0);
+        }
+        assert!(drawn(&dossier).contains(not_known));
+        fail(&mut dossier, 3480, Outcome::Exception, 2);
+        fail(&mut dossier, 44, Outcome::Exception, 2);
+        assert!(drawn(&dossier).contains("It is an <b class=\"\">ICON2000v4</b>"));
+        let mut dossier = device(&[(44, &[0x9000])]);
+        fail(&mut dossier, 3480, Outcome::Exception, 2);
+        assert!(drawn(&dossier).contains("It is an <b class=\"\">ICON3000</b>"));
+        let html = drawn(&device(&[(3480, &[1])]));
+        assert!(
+            html.contains("It is an <b class=\"\">ICON3000v2</b>"),
             "{html}"
         );
     }

@@ -1,14 +1,17 @@
 //! What the settings say in words: whether a partial stroke could run, positioner, fail-safe, modes,
 //! interlocks, inputs and relays.
 
+use shared::address::Table;
 use shared::icon3000::words::{
     Contact, Statement, Truth, fail_safe, inputs, interlocks, modes, positioner, pst, relays,
 };
-use shared::map::row::Source;
+use shared::map::row::{Row, Source};
 use shared::problem::Severity;
 
+use super::tools::read_at;
 use crate::actuator::state::dossier::Dossier;
 use crate::actuator::state::saved::model;
+use crate::actuator::state::wanted::within;
 use crate::markup::Markup;
 
 /// Registers that the sentences rest on: the first and how many.
@@ -23,12 +26,20 @@ pub const REGISTERS: [(u16, u16); 8] = [
     (3940, 1),
 ];
 
+/// Input registers from 0 on that an ICON2000v4 has in their stead; its bits are discrete inputs.
+pub const INPUTS: u16 = 5;
+
 /// All sentences.
-pub fn words(html: &mut Markup, dossier: &Dossier) {
+pub fn words(html: &mut Markup, dossier: &Dossier, now: i64) {
     let Some(model) = model(dossier.device) else {
         return;
     };
     let image = &dossier.image;
+    let told = |row: &Row| match row.table {
+        Table::Input => row.address.get() < INPUTS,
+        _ => within(row, &REGISTERS),
+    };
+    read_at(html, dossier, &dossier.rows(&told), now);
     let test = pst(model, image);
     html.open("div", &[("class", "icon-words")]);
     html.open("section", &[("data-testid", "words-pst")]);
@@ -82,16 +93,7 @@ fn statements(html: &mut Markup, statements: &[Statement]) {
         }
         html.text(&said.text).text(" ");
         if said.inferred {
-            html.open(
-                "em",
-                &[
-                    ("class", "trust"),
-                    ("title", "The manual does not say it in so many words."),
-                ],
-            )
-            .text("inferred")
-            .close("em")
-            .text(" ");
+            html.node("em", "trust", "inferred").text(" ");
         }
         proof(html, &said.registers, &said.source);
         html.close("li");
@@ -156,7 +158,7 @@ mod tests {
 
     fn drawn(dossier: &Dossier) -> String {
         let mut html = Markup::new();
-        words(&mut html, dossier);
+        words(&mut html, dossier, 0);
         html.finish()
     }
 

@@ -1,13 +1,11 @@
 //! What is wrong with the device, by NAMUR NE 107, the worst first.
 
-use shared::address::Table;
 use shared::few;
 use shared::icon3000::model::{HEALTH, Meaning};
-use shared::map::row::{Access, Kind, Row};
-use shared::value::Value;
+use shared::map::row::{Kind, Row, Set};
 
 use super::dossier::Dossier;
-use super::logs::Y2K;
+use super::logs::Table;
 
 /// A code of a log.
 #[derive(Clone, Debug)]
@@ -23,31 +21,13 @@ pub struct Past {
 }
 
 /// The words of a device that say what is wrong, in the order of the map. The holding registers
-/// have them all; older masters read the copies in the input registers.
+/// have them all; an ICON2000v4 has them in its input registers.
 #[must_use]
 pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
-    let Some(map) = dossier.device.map() else {
-        return Vec::new();
-    };
-    let told = |row: &&Row| {
-        row.kind == Kind::Bits
-            && row.access != Access::Absent
-            && row
-                .set
-                .is_some_and(|set| HEALTH.iter().any(|m| m.set == set.name))
-    };
-    let rows = |table| {
-        let rows = map.rows_of(table).iter().copied();
-        rows.filter(told).collect::<Vec<_>>()
-    };
-    let mut found = rows(Table::Holding);
-    for copy in rows(Table::Input) {
-        let set = |row: &Row| row.set.map(|s| s.name);
-        if found.iter().all(|row| set(row) != set(copy)) {
-            found.push(copy);
-        }
-    }
-    found
+    dossier.rows(&|row| {
+        let told = |set: &Set| HEALTH.iter().any(|m| m.set == set.name);
+        row.kind == Kind::Bits && row.set.is_some_and(told)
+    })
 }
 
 /// What the logs of alarms and warnings tell, the latest first, at most so many.
@@ -55,21 +35,15 @@ pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
 pub fn past(dossier: &Dossier, most: usize) -> Vec<Past> {
     let mut found: Vec<Past> = Vec::new();
     for (file, set) in [(2, "alarm_code"), (3, "warning_code")] {
-        let Some(log) = dossier.log(file) else {
-            continue;
-        };
-        let valid = |number: u16| log.stored.is_none_or(|stored| number <= stored);
-        for entry in log.entries.iter().filter(|e| valid(e.number)) {
-            let Some(Value::Code { raw, .. }) = entry.get("code").map(|i| i.value) else {
-                continue;
-            };
+        for row in Table::of(dossier, file).rows {
+            let code = row.cells.first().cloned().flatten().and_then(|c| c.number);
             let mut meanings = HEALTH.iter();
-            let meaning = meanings.find(|m| m.set == set && u32::from(m.value) == raw);
+            let meaning = meanings.find(|m| m.set == set && Some(i64::from(m.value)) == code);
             if let Some(meaning) = meaning {
                 found.push(Past {
                     meaning,
-                    time: entry.time().map(|t| Y2K + i64::from(t)),
-                    number: entry.number,
+                    time: row.time,
+                    number: row.number,
                     file,
                 });
             }
@@ -102,6 +76,22 @@ mod tests {
                 .all(|r| wanted.contains(&r.address.get()))
         );
         assert!(rows(&Dossier::new("x", Device::None)).is_empty());
+    }
+
+    /// The ICON2000v4 tells its latest alarm in IR 45 to 49: code 12, 2024-02-29 12:34:56.
+    #[test]
+    fn registers_tell_the_past_of_an_older_model() {
+        let mut dossier = Dossier::new("x", Device::Icon2000v4);
+        let words = [0, 12, 0x29, 0x02, 0x20, 0x24, 0, 0x12, 0x34, 0x56];
+        let mut response = vec![4, 10];
+        response.extend(words);
+        assert!(dossier.absorb(&[4, 0, 45, 0, 5], &response, 1));
+        let past = past(&dossier, 9);
+        assert_eq!((past.len(), past[0].meaning.value), (1, 12));
+        let time = past[0].time.map(crate::chart::time::stamp);
+        assert_eq!(time.as_deref(), Some("2024-02-29 12:34:56"));
+        let wanted = rows(&dossier);
+        assert!(wanted.iter().any(|r| r.key == "alarms_1"));
     }
 
     #[test]

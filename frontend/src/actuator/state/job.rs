@@ -1,9 +1,10 @@
 //! Reading under way: how far it is, how long it may take, and what comes next.
 
+use shared::icon3000::FileRead;
 use shared::proto::{IconNews, IconStep, Outcome};
 
 use super::dossier::Dossier;
-use super::wanted::Wanted;
+use super::wanted::{Wanted, step_of};
 
 /// What is being read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,15 +76,27 @@ impl Job {
                 let Some(step) = step.and_then(|at| self.steps.get(at)).copied() else {
                     return false;
                 };
-                let good = *outcome == Outcome::Ok
-                    && dossier.absorb(&bytes_of(request), &bytes_of(response), *at_us);
-                if !good {
-                    let text = if *outcome == Outcome::Ok {
-                        "The answer does not fit what was asked."
-                    } else {
-                        text
-                    };
-                    dossier.fail(step, *outcome, text, *at_us);
+                let (request, response) = (bytes_of(request), bytes_of(response));
+                let ok = *outcome == Outcome::Ok;
+                if ok && dossier.absorb(&request, &response, *at_us) {
+                    return false;
+                }
+                let text = if ok {
+                    "The answer does not fit what was asked."
+                } else {
+                    text
+                };
+                let code = match response[..] {
+                    [function, code] if function >= 0x80 => code,
+                    _ => 0,
+                };
+                let mut fail = |step| dossier.fail(step, *outcome, code, text, *at_us);
+                match (step, FileRead::of_pdu(&request)) {
+                    // A request may hold parts of several files, not only of that of the step.
+                    (IconStep::File { .. }, Some(read)) => {
+                        read.spans().iter().copied().map(step_of).for_each(fail);
+                    }
+                    _ => fail(step),
                 }
             }
             IconNews::Progress {

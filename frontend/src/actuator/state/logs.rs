@@ -6,20 +6,47 @@ pub(crate) mod tests;
 use core::cmp::Ordering;
 
 use shared::icon3000::model::{Field, File, Kind};
+use shared::icon3000::say::bytes_of;
 use shared::icon3000::{Item, Log};
+use shared::map::row::Row as MapRow;
 use shared::value::{Quality, Value};
 
+use super::curves::short;
 use super::dossier::Dossier;
+use super::wanted::LIMITS;
 use crate::chart::table::quote;
 use crate::chart::ticks::ordered;
-use crate::chart::time::stamp;
+use crate::chart::time::{Civil, stamp};
 use crate::state::json::quoted;
 
 /// Seconds from 1970 to 2000, where the clock of the device begins (reading E73).
 pub const Y2K: i64 = 946_684_800;
 
-/// Logs that the screen shows, by file.
-pub const LOGS: [u16; 5] = [2, 3, 4, 5000, 5];
+/// Logs that the screen shows, by file. Before the ICON3000v2 there are no files, but the five
+/// latest alarms and warnings in registers.
+pub const LOGS: [u16; 5] = [2, 3, 4, 5000, LIMITS];
+
+/// The logs that a device has.
+#[must_use]
+pub fn logs_of(dossier: &Dossier) -> &'static [u16] {
+    if dossier.device.implements(20) {
+        &LOGS
+    } else {
+        &LOGS[..2]
+    }
+}
+
+/// Registers with the latest alarms and warnings, on a model without files.
+#[must_use]
+pub fn rows(dossier: &Dossier) -> Vec<&'static MapRow> {
+    if dossier.device.implements(20) {
+        return Vec::new();
+    }
+    dossier.rows(&|row| LISTS.iter().any(|list| row.key.starts_with(list)))
+}
+
+/// How the keys of the registers of a log begin: those of alarms, those of warnings.
+const LISTS: [&str; 2] = ["alarm_log_", "warning_log_"];
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +79,8 @@ pub struct Row {
 pub struct Table {
     /// Number of the file.
     pub file: u16,
-    /// Its name.
-    pub name: String,
+    /// Where its entries stand: `file 2`, or registers.
+    pub place: String,
     /// What an entry is called.
     pub item: &'static str,
     /// Where the manual describes it.
@@ -81,7 +108,7 @@ impl Table {
         };
         let mut table = Self {
             file,
-            name: described.name(file).into_owned(),
+            place: format!("file {file}"),
             item: described.item,
             source: described.source.to_string(),
             note: described.note,
@@ -94,6 +121,9 @@ impl Table {
         let shown = |f: &&Field| f.kind != Kind::Unused && f.key != "time";
         table.columns = layout.entry.iter().filter(shown).collect();
         let Some(log) = dossier.log(file) else {
+            if !dossier.device.implements(20) {
+                table.registers(dossier);
+            }
             return table;
         };
         table.stored = log.stored;
@@ -116,6 +146,39 @@ impl Table {
             });
         }
         table
+    }
+
+    /// The five latest entries in registers: code, date and time of each. Code 0 is no entry.
+    fn registers(&mut self, dossier: &Dossier) {
+        let list = LISTS[usize::from(self.file != 2)];
+        let rows = dossier.rows(&|row| row.key.starts_with(list));
+        if let (Some(first), Some(last)) = (rows.first(), rows.last()) {
+            let end = last.address.get() + last.words - 1;
+            self.place = format!("{} {} to {end}", short(first), first.address);
+            self.source = first.source.to_string();
+        }
+        for (number, entry) in (1..).zip(rows.chunks(3)) {
+            let part = |at: usize| Some((*entry.get(at)?, dossier.image.row(entry.get(at)?)?));
+            let Some((row, seen)) = part(0) else { continue };
+            let Value::Code { raw, .. } = seen.judged.value else {
+                continue;
+            };
+            let value = |at: usize| part(at).map(|(_, seen)| seen.judged.value);
+            if raw > 0 {
+                let bytes = dossier.image.bytes(row).unwrap_or_default();
+                self.rows.push(Row {
+                    number,
+                    time: moment(value(1), value(2)),
+                    cells: vec![Some(Cell {
+                        text: bytes_of(row, &bytes),
+                        unit: "",
+                        raw: format!("{raw:04X}"),
+                        quality: seen.judged.quality,
+                        number: Some(raw.into()),
+                    })],
+                });
+            }
+        }
     }
 
     /// Reading E69: nothing is known about the file, so each record is a row of its own.
@@ -240,6 +303,29 @@ impl Row {
     }
 }
 
+/// Seconds since 1970 of a date and a time.
+#[must_use]
+pub fn moment(date: Option<Value>, time: Option<Value>) -> Option<i64> {
+    let (
+        Value::Date { year, month, day },
+        Value::Time {
+            hour,
+            minute,
+            second,
+        },
+    ) = (date?, time?)
+    else {
+        return None;
+    };
+    let civil = Civil {
+        year: i64::from(year),
+        month: i64::from(month),
+        day: i64::from(day),
+        second: i64::from(hour) * 3600 + i64::from(minute) * 60 + i64::from(second),
+    };
+    Some(civil.seconds())
+}
+
 /// The values of a head that say more than how many entries there are.
 fn head(log: &Log) -> Vec<(String, String)> {
     let items = log.head.iter().flatten();
@@ -285,6 +371,8 @@ pub struct Filter {
     pub column: Column,
     /// True for the largest first.
     pub down: bool,
+    /// True to show the words of the device and not what they mean.
+    pub raw: bool,
 }
 
 impl Filter {
