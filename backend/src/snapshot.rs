@@ -5,6 +5,8 @@ use crate::bus::query::Query;
 use shared::icon3000::collect::{Answer, Collector, Wire};
 use shared::icon3000::snapshot::Snapshot;
 use shared::proto::Outcome;
+use std::time::Duration;
+use tokio::time::sleep;
 
 /// A device that gives no answer to so many requests in a row is not there.
 const SILENT: u32 = 3;
@@ -33,12 +35,16 @@ pub async fn take(
     let mut silent = 0;
     while let Some(step) = collector.step() {
         let (pdu, text) = (step.pdu.clone(), step.text());
+        let wait = Duration::from_millis(step.wait_ms.into());
         let (done, total) = collector.progress();
         tell(done, total, &text);
         let Some(query) = Query::of_pdu(&pdu) else {
             collector.answer(Answer::Failed("not a request that reads"));
             continue;
         };
+        if !wait.is_zero() {
+            sleep(wait).await;
+        }
         let report = bus.read(device, query).await;
         match (report.pdu, report.code) {
             (Some(response), _) => {

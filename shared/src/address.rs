@@ -47,6 +47,17 @@ impl Table {
         }
     }
 
+    /// The short name in sentences: `HR` of `HR 3010`.
+    #[must_use]
+    pub const fn short(self) -> &'static str {
+        match self {
+            Self::Coil => "coil",
+            Self::Discrete => "DI",
+            Self::Input => "IR",
+            Self::Holding => "HR",
+        }
+    }
+
     /// 0 to 3, in the order in which maps are listed.
     pub(crate) const fn index(self) -> u32 {
         match self {

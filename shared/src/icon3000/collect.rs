@@ -3,21 +3,39 @@
 //! Pure: whoever owns the line asks for the [`Collector::step`] request, sends it, and hands the
 //! answer back. First the tables (never a reserved range), identity and counters; then, where the
 //! model has files, the heads of the logs, the curves that the registers say are stored, and the
-//! card reports; then the entries that the heads announce; at last the heads once more, so that a
-//! log that changed while it was read is known.
+//! card reports; then the entries that the heads announce, and the file of which nobody knows how
+//! long it is; at last the heads once more, so that a log that changed while it was read is known.
+//!
+//! A busy device is asked again ([`Step::wait_ms`]). What it refuses as a whole is asked for in parts.
+
+mod split;
+mod wire;
 
 use std::collections::VecDeque;
 
 use super::counters;
 use super::model::{FILES, File, Numbering};
-use super::plan::{FileRead, Span, plan};
+use super::plan::{FileRead, Probe, Span, plan};
 use super::snapshot::{Failure, Part, Snapshot};
 use crate::address::{Address, Table};
 use crate::encode::Read;
 use crate::map;
+use split::Split;
+
+pub use wire::Wire;
 
 /// Function code of file reads.
 const READ_FILE: u8 = 20;
+/// Exception codes (table 50).
+const ILLEGAL_FUNCTION: u8 = 1;
+const ILLEGAL_ADDRESS: u8 = 2;
+const ILLEGAL_VALUE: u8 = 3;
+/// "The master should retransmit the request later."
+const BUSY: u8 = 6;
+/// How often a busy device is asked again, and how long is waited before each time.
+pub const BUSY_TRIES: u8 = 3;
+/// See [`BUSY_TRIES`].
+pub const BUSY_WAIT_MS: u32 = 200;
 /// Registers that tell how many curves of a kind are stored, and whether a reference is set
 /// (reading E32), by the first file of the kind.
 const STORED: [(u16, u16, u16); 4] = [
@@ -34,25 +52,33 @@ pub struct Step {
     pub pdu: Vec<u8>,
     /// Length of a good response PDU.
     pub response_len: usize,
+    /// How long to wait before it is sent: the device was busy.
+    pub wait_ms: u32,
+    /// How often it was sent already.
+    tries: u8,
     /// What it reads; of several stretches of files, all.
     parts: Vec<Part>,
 }
 
 impl Step {
-    fn block(read: Read) -> Self {
+    fn new(pdu: Vec<u8>, response_len: usize, parts: Vec<Part>) -> Self {
         Self {
-            pdu: read.pdu().to_vec(),
-            response_len: read.response_len(),
-            parts: vec![Part::Block(read.table, read.start, read.count())],
+            pdu,
+            response_len,
+            wait_ms: 0,
+            tries: 0,
+            parts,
         }
     }
 
+    fn block(read: Read) -> Self {
+        let part = Part::Block(read.table, read.start, read.count());
+        Self::new(read.pdu().to_vec(), read.response_len(), vec![part])
+    }
+
     fn files(read: &FileRead) -> Self {
-        Self {
-            pdu: read.pdu(),
-            response_len: read.response_len(),
-            parts: read.spans().iter().copied().map(Part::File).collect(),
-        }
+        let parts = read.spans().iter().copied().map(Part::File).collect();
+        Self::new(read.pdu(), read.response_len(), parts)
     }
 
     /// What it reads.
@@ -84,54 +110,14 @@ pub enum Answer<'a> {
     Failed(&'a str),
 }
 
-/// What the wire carried, for the theoretical time of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wire {
-    /// Exchanges.
-    pub exchanges: u32,
-    /// Bytes of all request frames, address and CRC included.
-    pub request_bytes: u32,
-    /// Bytes of all response frames, address and CRC included.
-    pub response_bytes: u32,
-}
-
-impl Wire {
-    fn add(&mut self, request: usize, response: usize) {
-        // Address and CRC.
-        let frame = |pdu: usize| u32::try_from(pdu.saturating_add(3)).unwrap_or(u32::MAX);
-        self.exchanges = self.exchanges.saturating_add(1);
-        self.request_bytes = self.request_bytes.saturating_add(frame(request));
-        self.response_bytes = self.response_bytes.saturating_add(frame(response));
-    }
-
-    /// Theoretical time on a Modbus RTU line, in microseconds: all characters, and a silence of 3.5
-    /// characters (1.75 ms above 19200 baud) after each frame. `bits` of a character are 11 with
-    /// parity or two stop bits, else 10.
-    ///
-    /// Source: Modbus over Serial Line V1.02, section 2.5.1.1.
-    #[must_use]
-    pub fn micros(&self, baud: u32, bits: u32) -> u64 {
-        let bytes = u64::from(self.request_bytes).saturating_add(self.response_bytes.into());
-        // In bits, so that nothing is rounded before the end; the silence counts in half characters.
-        let time = |bits: u64| bits.saturating_mul(1_000_000).checked_div(baud.into());
-        let characters = time(bytes.saturating_mul(bits.into())).unwrap_or(0);
-        let frames = u64::from(self.exchanges).saturating_mul(2);
-        let silence = if baud > 19_200 {
-            frames.saturating_mul(1750)
-        } else {
-            let halves = frames.saturating_mul(7).saturating_mul(bits.into());
-            time(halves).unwrap_or(0) / 2
-        };
-        characters.saturating_add(silence)
-    }
-}
-
 /// What is asked next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Tables,
     Heads,
     Entries,
+    /// Files of which nothing says how long they are.
+    Raw,
     Again,
     Done,
 }
@@ -144,6 +130,13 @@ pub struct Collector {
     stage: Stage,
     done: u32,
     wire: Wire,
+    /// A block that was refused and is read in parts.
+    split: Option<Split>,
+    /// The file whose length is being found.
+    probe: Option<Probe>,
+    /// Curves of which it is not known how many there are; told once the device turned out to have
+    /// files.
+    uncounted: Vec<Failure>,
 }
 
 impl Collector {
@@ -156,18 +149,11 @@ impl Collector {
             let rows = map.rows_of(table).iter().copied();
             queue.extend(map::plan::plan(table, rows).into_iter().map(Step::block));
         }
-        queue.push_back(Step {
-            pdu: vec![17],
-            response_len: 86,
-            parts: vec![Part::Identity],
-        });
+        queue.push_back(Step::new(vec![17], 86, vec![Part::Identity]));
         for counter in &counters::NAMES {
             let [high, low] = counter.sub.to_be_bytes();
-            queue.push_back(Step {
-                pdu: vec![8, high, low, 0, 0],
-                response_len: 5,
-                parts: vec![Part::Counter(counter.sub)],
-            });
+            let part = Part::Counter(counter.sub);
+            queue.push_back(Step::new(vec![8, high, low, 0, 0], 5, vec![part]));
         }
         Self {
             snapshot,
@@ -175,6 +161,9 @@ impl Collector {
             stage: Stage::Tables,
             done: 0,
             wire: Wire::default(),
+            split: None,
+            probe: None,
+            uncounted: Vec::new(),
         }
     }
 
@@ -199,17 +188,19 @@ impl Collector {
             Answer::Response(response) => {
                 self.wire.add(step.pdu.len(), response.len());
                 if self.take(&step, response) {
+                    self.took();
                     return true;
                 }
                 match response {
                     [function, code, ..] if *function >= 0x80 => {
-                        return self.refused(step, *code);
+                        self.refused(step, *code);
+                        return false;
                     }
                     _ => "the answer is not what was asked for".to_owned(),
                 }
             }
         };
-        self.failed(&step, &why);
+        self.gave_up(&step, &why);
         false
     }
 
@@ -268,24 +259,87 @@ impl Collector {
         true
     }
 
-    /// An exception: of several stretches one may be to blame, so each is asked on its own.
-    fn refused(&mut self, step: Step, code: u8) -> bool {
+    /// A good answer: what is read piece by piece goes on.
+    fn took(&mut self) {
+        if let Some(probe) = &mut self.probe {
+            probe.answered();
+        }
+        if let Some(split) = &mut self.split {
+            split.answered();
+            self.go_on_splitting();
+        }
+    }
+
+    /// An exception. A busy device is asked again a little later. Of several stretches of files one
+    /// may be to blame, so each is asked on its own; so are the parts of a block of registers, and a
+    /// file of unknown length is asked for less.
+    fn refused(&mut self, mut step: Step, code: u8) {
+        if code == BUSY && step.tries < BUSY_TRIES {
+            step.tries = step.tries.saturating_add(1);
+            step.wait_ms = BUSY_WAIT_MS;
+            self.queue.push_front(step);
+            return;
+        }
+        let blames_a_part = matches!(code, ILLEGAL_ADDRESS | ILLEGAL_VALUE);
         let read = FileRead::of_pdu(&step.pdu);
-        if let Some(read) = read.filter(|r| code != 1 && r.spans().len() > 1) {
+        if let Some(read) = read.filter(|r| blames_a_part && r.spans().len() > 1) {
             for part in read.split().iter().rev() {
                 self.queue.push_front(Step::files(part));
             }
-            return false;
+            return;
         }
         let name = crate::pdu::names::exception(code).map_or("unknown exception", |e| e.0);
         let why = format!("exception {code:02}: {}", name.to_ascii_lowercase());
-        self.failed(&step, &why);
+        match (&mut self.probe, step.parts.first()) {
+            (Some(probe), _) if blames_a_part => {
+                probe.refused();
+                // At the end of the file nothing is missing, unless there is no file at all.
+                if probe.next().is_some() || probe.found() > 0 {
+                    return;
+                }
+            }
+            (None, Some(Part::Block(table, start, count))) if code == ILLEGAL_ADDRESS => {
+                let map = self.snapshot.model.map();
+                let read = Read::new(*table, *start, *count);
+                match (&mut self.split, read) {
+                    (Some(split), Some(read)) => {
+                        split.refused(map, read);
+                        return self.go_on_splitting();
+                    }
+                    (None, Some(read)) => self.split = Split::new(map, read, why.clone()),
+                    _ => {}
+                }
+                if self.split.is_some() {
+                    return self.go_on_splitting();
+                }
+            }
+            _ => {}
+        }
+        self.gave_up(&step, &why);
         // Without the function there are no files at all.
-        if code == 1 && step.pdu.first() == Some(&READ_FILE) {
+        if code == ILLEGAL_FUNCTION && step.pdu.first() == Some(&READ_FILE) {
             self.queue.clear();
             self.stage = Stage::Done;
         }
-        false
+    }
+
+    /// The next part of a block that was refused; after the last one, what none of them gave.
+    fn go_on_splitting(&mut self) {
+        let Some(split) = &mut self.split else {
+            return;
+        };
+        if let Some(read) = split.next() {
+            self.queue.push_front(Step::block(read));
+        } else if let Some(split) = self.split.take() {
+            self.snapshot.failures.extend(split.failures());
+        }
+    }
+
+    /// Nothing came of a request, and it is not sent again.
+    fn gave_up(&mut self, step: &Step, why: &str) {
+        self.failed(step, why);
+        self.probe = None;
+        self.go_on_splitting();
     }
 
     fn failed(&mut self, step: &Step, why: &str) {
@@ -298,28 +352,45 @@ impl Collector {
     }
 
     fn go_on(&mut self) {
+        if let Some(span) = self.probe.and_then(Probe::next) {
+            self.queue.extend(plan([span]).iter().map(Step::files));
+            return;
+        }
         let (stage, spans) = match self.stage {
             Stage::Tables if self.snapshot.model.map().implements(READ_FILE) => {
                 (Stage::Heads, self.heads())
             }
-            Stage::Heads => (Stage::Entries, self.entries()),
+            Stage::Heads => {
+                self.snapshot.failures.append(&mut self.uncounted);
+                (Stage::Entries, self.entries())
+            }
+            Stage::Entries => {
+                let unknown = FILES.iter().find(|f| f.layout.is_none());
+                self.probe = unknown.map(|f| Probe::new(f.first, 0));
+                (Stage::Raw, Vec::new())
+            }
             // Only a log that took more than its head can have changed on the way.
-            Stage::Entries => (Stage::Again, self.again()),
+            Stage::Raw => (Stage::Again, self.again()),
             _ => (Stage::Done, Vec::new()),
         };
+        if stage == Stage::Again {
+            self.probe = None;
+        }
         self.stage = stage;
         self.queue.extend(plan(spans).iter().map(Step::files));
     }
 
     /// The heads of all logs, the curves that are stored, the reports of the cards.
-    fn heads(&self) -> Vec<Span> {
+    ///
+    /// Where the register that counts the curves was not read, the latest is tried, and the snapshot
+    /// says that there may be more; so is a reference of which it is not known whether there is one.
+    fn heads(&mut self) -> Vec<Span> {
+        let image = &self.snapshot.image;
         let register = |address: u16| {
-            let cell = self
-                .snapshot
-                .image
-                .cell(Table::Holding, Address::new(address));
-            cell.map_or(0, |c| c.word)
+            let cell = image.cell(Table::Holding, Address::new(address));
+            cell.map(|c| c.word)
         };
+        let mut failures = Vec::new();
         let mut spans = Vec::new();
         for file in FILES.iter().filter(|f| f.is_log()) {
             let head = file.layout.map_or(0, |l| l.head_records);
@@ -335,8 +406,19 @@ impl Collector {
                     continue;
                 };
                 let most = file.last.saturating_sub(file.first);
-                let latest = register(*stored).min(most);
-                let from = if register(*set) == 0 { 1 } else { 0 };
+                let latest = register(*stored).map_or(1, |n| n.min(most));
+                if register(*stored).is_none() {
+                    failures.push(Failure {
+                        part: Part::Block(Table::Holding, Address::new(*stored), 1),
+                        why: format!(
+                            "not read, so how many of the files {} to {} there are is not known; \
+                             of these only the first was tried",
+                            first.saturating_add(1),
+                            file.last
+                        ),
+                    });
+                }
+                let from = if register(*set) == Some(0) { 1 } else { 0 };
                 (from..=latest).map(|n| first.saturating_add(n)).collect()
             } else {
                 (file.first..=file.last).collect()
@@ -347,6 +429,7 @@ impl Collector {
                     .map(|n| Span::new(n, 0, layout.head_records)),
             );
         }
+        self.uncounted = failures;
         spans
     }
 

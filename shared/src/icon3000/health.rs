@@ -3,7 +3,7 @@
 //! The manual has no categories of NAMUR NE 107; the mapping in `health.csv` is ours, and each line
 //! gives its reason.
 
-use super::model::{HEALTH, Meaning, Ne107};
+use super::model::{HEALTH, MIRRORS, Meaning, Ne107};
 use crate::address::Table;
 use crate::few;
 use crate::image::Image;
@@ -19,14 +19,14 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Where it stands: `HR 3010, bit 7`.
+    /// Where it stands: `HR 3010, bit 7` or `DI 4`.
     #[must_use]
     pub fn place(&self) -> String {
-        let table = match self.row.table {
-            Table::Input => "IR",
-            _ => "HR",
-        };
-        format!("{table} {}, bit {}", self.row.address, self.meaning.value)
+        let (table, address) = (self.row.table, self.row.address);
+        if table.is_bits() {
+            return format!("{} {address}", table.short());
+        }
+        format!("{} {address}, bit {}", table.short(), self.meaning.value)
     }
 
     /// Where the bit is described; its category is ours.
@@ -41,8 +41,11 @@ impl Finding {
 pub struct Health {
     /// What is not as it should be, worst first; of one category in the order of the data.
     pub findings: Vec<Finding>,
-    /// Registers that were not read: what they would say is not known.
+    /// Registers and bits that were not read: what they would say is not known.
     pub unread: Vec<&'static Row>,
+    /// What the model has no place for: it may be so or not. Reading E41: discrete inputs 29 to 31
+    /// of an ICON2000v4 tell nothing.
+    pub untold: Vec<&'static Meaning>,
 }
 
 impl Health {
@@ -52,7 +55,7 @@ impl Health {
         self.findings.first().map(|f| f.meaning.status)
     }
 
-    /// True if every register was read and nothing was found.
+    /// True if everything that the model tells was read, and nothing was found.
     #[must_use]
     pub fn is_good(&self) -> bool {
         self.findings.is_empty() && self.unread.is_empty()
@@ -81,6 +84,7 @@ pub fn health(model: Model, image: &Image) -> Health {
         }
         sets.push(meaning.set);
         let Some(row) = register(model, image, meaning.set) else {
+            health.read_bits(model, image, meaning.set);
             continue;
         };
         let Some(bytes) = image.bytes(row) else {
@@ -98,6 +102,30 @@ pub fn health(model: Model, image: &Image) -> Health {
     }
     few::sort_by_key(&mut health.findings, |f| rank(f.meaning.status));
     health
+}
+
+impl Health {
+    /// Bits of a register that the model does not have, from the discrete inputs that show the same
+    /// (reading E41). Codes of the logs are no bits.
+    fn read_bits(&mut self, model: Model, image: &Image, set: &str) {
+        let Some(home) = register(Model::Icon3000v2, image, set) else {
+            return;
+        };
+        for meaning in HEALTH.iter().filter(|m| m.set == set) {
+            let copy = MIRRORS
+                .iter()
+                .find(|m| m.home == home.address && m.bit.map(u16::from) == Some(meaning.value));
+            let row = copy.and_then(|m| model.map().row_at(m.table, m.address));
+            match row.map(|row| (row, image.cell(row.table, row.address))) {
+                None => self.untold.push(meaning),
+                Some((row, None)) => self.unread.push(row),
+                Some((row, Some(cell))) if cell.word != 0 => {
+                    self.findings.push(Finding { meaning, row });
+                }
+                Some(_) => {}
+            }
+        }
+    }
 }
 
 /// The register that holds a set of bits: of several, one that was read; holding registers first.

@@ -187,10 +187,18 @@ pub struct Guess {
     pub why: String,
 }
 
+/// Holding registers that tell the models apart when each is asked for alone: the level logged in,
+/// which only an ICON3000v2 has, and the first one that an ICON2000v4 does not have (reading E35).
+pub const PROBES: [u16; 2] = [3480, 22];
+
 /// Which model a device is, from what was read of it (reading E84).
 ///
-/// `refused` tells whether a read of a holding register beyond 3473, and one of a register beyond
-/// 21, was refused with exception 02 (`Some(true)`), answered (`Some(false)`), or not tried.
+/// `beyond_3473` and `beyond_21` tell whether a read of one holding register beyond 3473, and of one
+/// beyond 21 ([`PROBES`]), was refused with exception 02 (`Some(true)`), answered (`Some(false)`), or
+/// not tried. A block says less: it is refused for any register of it.
+///
+/// Software before 4.00 alone says no more than that it is no ICON3000v2: function 17 is one of an
+/// ICON2000v4 too (table 6).
 #[must_use]
 pub fn detect(
     image: &Image,
@@ -199,14 +207,25 @@ pub fn detect(
     beyond_21: Option<bool>,
 ) -> Guess {
     let guess = |model, why: &str| Guess {
-        model: Some(model),
+        model,
         why: why.to_owned(),
     };
-    let known = |address: u16| image.cell(Table::Holding, Address::new(address)).is_some();
-    if known(3480) || beyond_3473 == Some(false) {
+    let answers = |from: u16, to: u16| {
+        image
+            .iter()
+            .any(|(table, at, _)| table == Table::Holding && (from..=to).contains(&at.get()))
+    };
+    if answers(3474, u16::MAX) || beyond_3473 == Some(false) {
         return guess(
-            Model::Icon3000v2,
+            Some(Model::Icon3000v2),
             "A register beyond 3473 answers; only an ICON3000v2 has them.",
+        );
+    }
+    let beyond_21_answers = answers(22, 3473) || beyond_21 == Some(false);
+    if beyond_21 == Some(true) && !beyond_21_answers {
+        return guess(
+            Some(Model::Icon2000v4),
+            "Registers beyond 21 are refused; the ICON2000v4 has 0 to 21 only.",
         );
     }
     let of_registers = {
@@ -215,38 +234,45 @@ pub fn detect(
             .row_at(Table::Holding, Address::new(3072));
         row.and_then(|row| image.bytes(row)).map(|b| text_of(&b))
     };
-    let interface = report.map(|r| r.interface.clone()).or(of_registers);
-    if let Some(major) = interface.as_deref().and_then(major) {
-        let text = interface.unwrap_or_default();
-        return if major >= 4 {
-            Guess {
-                model: Some(Model::Icon3000v2),
-                why: format!("The interface has software {text}; 4.00 or later is an ICON3000v2."),
-            }
-        } else {
-            Guess {
-                model: Some(Model::Icon3000),
-                why: format!("The interface has software {text}, before 4.00 of the ICON3000v2."),
-            }
-        };
-    }
-    if beyond_21 == Some(true) {
-        return guess(
-            Model::Icon2000v4,
-            "Registers beyond 21 are refused; the ICON2000v4 has 0 to 21 only.",
-        );
-    }
-    if beyond_3473 == Some(true) && (known(3000) || beyond_21 == Some(false)) {
-        return guess(
-            Model::Icon3000,
+    let software = report.map(|r| r.interface.clone()).or(of_registers);
+    let said = software.as_deref().and_then(major).zip(software.as_deref());
+    let is_new = said.map(|(major, _)| major >= 4);
+    let software = said.map_or("", |(_, text)| text);
+    match (is_new, beyond_3473, beyond_21_answers) {
+        (Some(true), Some(true), _) => Guess {
+            model: None,
+            why: format!(
+                "The interface has software {software}, which is that of an ICON3000v2, but HR 3480 \
+                 is refused."
+            ),
+        },
+        (Some(true), ..) => Guess {
+            model: Some(Model::Icon3000v2),
+            why: format!("The interface has software {software}; 4.00 or later is an ICON3000v2."),
+        },
+        (Some(false), _, true) => Guess {
+            model: Some(Model::Icon3000),
+            why: format!(
+                "Registers beyond 21 answer, and the interface has software {software}, before the \
+                 4.00 of the ICON3000v2."
+            ),
+        },
+        (None, Some(true), true) => guess(
+            Some(Model::Icon3000),
             "Registers beyond 3473 are refused, those before answer.",
-        );
-    }
-    Guess {
-        model: None,
-        why: "What was read does not tell the model: neither the interface software (FC 17 or \
-              HR 3072) nor a register beyond 3473 is known."
-            .to_owned(),
+        ),
+        (Some(false), ..) => Guess {
+            model: None,
+            why: format!(
+                "The interface has software {software}: no ICON3000v2. Whether it is an ICON3000 or \
+                 an ICON2000v4, HR 22 would tell."
+            ),
+        },
+        (None, ..) => guess(
+            None,
+            "What was read does not tell: neither the software of the interface (FC 17 or HR 3072) \
+             nor a register beyond 3473 or 21 is known.",
+        ),
     }
 }
 

@@ -1,8 +1,11 @@
 //! Layouts, records and plans, by hand from section 8.11 of VCIOM-16345-EN.
 
 #[cfg(feature = "sim")]
+mod collect;
+#[cfg(feature = "sim")]
 mod device;
 mod views;
+mod words;
 
 use super::model::{FILES, File, Numbering};
 use super::plan::{FileRead, MOST_RECORDS, Probe, Span, plan};

@@ -12,9 +12,6 @@ use crate::icon3000::model::Ne107;
 use crate::icon3000::read::Log;
 use crate::icon3000::records::{Files, Records};
 use crate::icon3000::stroke::{Point, Stroke, limits};
-use crate::icon3000::words::{
-    Truth, fail_safe, inputs, interlocks, modes, positioner, pst, relays,
-};
 use crate::icon3000::{collect::Wire, counters};
 use crate::image::Image;
 use crate::map::row::{Level, Model};
@@ -74,6 +71,45 @@ fn health_is_one_list_worst_first() {
     old.set(Table::Input, Address::new(3), 1 << 14, Micros::default());
     let found = health(Model::Icon2000v4, &old);
     assert_eq!(found.findings[0].place(), "IR 3, bit 14");
+    old.set(Table::Input, Address::new(3), 0, Micros::default());
+    for address in [2, 4] {
+        old.set(Table::Input, Address::new(address), 0, Micros::default());
+    }
+    // Its status is in discrete inputs 0 to 28 (table 1): not read, so not known to be good.
+    let found = health(Model::Icon2000v4, &old);
+    let mut bits: Vec<_> = found.unread.iter().map(|row| row.address.get()).collect();
+    bits.sort_unstable();
+    assert_eq!(bits, [4, 16, 19, 23]);
+    assert!(found.findings.is_empty() && !found.is_good());
+    for address in 0..30 {
+        let on = u16::from(address == 4);
+        old.set(
+            Table::Discrete,
+            Address::new(address),
+            on,
+            Micros::default(),
+        );
+    }
+    let found = health(Model::Icon2000v4, &old);
+    assert_eq!(found.findings[0].meaning.key, "selector_in_local");
+    assert_eq!(found.findings[0].place(), "DI 4");
+    old.set(Table::Discrete, Address::new(4), 0, Micros::default());
+    let found = health(Model::Icon2000v4, &old);
+    assert!(found.is_good(), "{found:?}");
+    // Handwheel, maintenance and the like stand nowhere in tables 1 and 4; ESD and PST in progress
+    // have no input of their own (reading E41).
+    let untold: Vec<_> = found.untold.iter().map(|m| m.key).collect();
+    for key in [
+        "manual_operation_handwheel",
+        "local_configuration",
+        "maintenance_operation",
+        "esd_in_progress",
+        "pst_in_progress",
+        "base_card_communication_error",
+        "efs_mid_travel",
+    ] {
+        assert!(untold.contains(&key), "{key}: {untold:?}");
+    }
     assert_eq!(alarm(4).unwrap().status, Ne107::Maintenance);
     assert_eq!(warning(10).unwrap().status, Ne107::Maintenance);
     assert_eq!((alarm(0), alarm(33)), (None, None));
@@ -219,75 +255,6 @@ fn stroke_tests_in_words() {
     let set = limits(&image(&[(3616, 150), (3619, 5)]), Some(&passed));
     // 150 % of 4.9 s; 5 % of the stroke; T-RET was not read.
     assert_eq!(set.map(|l| l.presumed_tenths), [Some(73), None, Some(50)]);
-}
-
-#[test]
-fn whether_a_test_could_run() {
-    let mut words: Vec<(u16, u16)> = vec![(3027, 1), (3028, 0)];
-    words.extend([3001, 3002, 3010, 3011, 3016, 3030].map(|a| (a, 0)));
-    let ready = pst(V2, &image(&words));
-    assert_eq!(ready.could_run, Truth::Yes, "{ready:?}");
-    words[0].1 = 0;
-    let no = pst(V2, &image(&words));
-    assert_eq!(no.could_run, Truth::No);
-    assert_eq!(
-        no.text,
-        "No. Interlock mode must be Advanced; it is Standard (0)."
-    );
-    // The mirror counts where the register itself was not read.
-    words[0] = (3920, 1);
-    assert_eq!(pst(V2, &image(&words)).could_run, Truth::Yes);
-    words.push((3010, 1 << 8));
-    let mains = pst(V2, &image(&words));
-    assert!(
-        mains.text.contains("the mains voltage is out of limits"),
-        "{}",
-        mains.text
-    );
-    assert_eq!(pst(V2, &Image::new()).could_run, Truth::Unknown);
-    assert_eq!(pst(Model::Icon3000, &Image::new()).could_run, Truth::No);
-}
-
-#[test]
-fn settings_in_sentences() {
-    let set = image(&[
-        (3001, 1 << 5 | 1 << 8 | 1 << 14),
-        (3002, 1 << 6),
-        (3007, 345),
-        (3017, 10),
-        (3018, 2),
-        (3019, 0),
-        (3500, 1 << 2),
-        (3582, 2),
-        (3590, 1),
-        (3598, 75),
-        (3622, 3),
-        (3628, 20),
-        (3027, 1),
-        (3003, 0),
-        (3030, 0),
-    ]);
-    let said = positioner(V2, &set);
-    assert!(said[0].text.contains("more than 1.0 %") && said[0].text.contains("2 s have"));
-    assert!(said[1].text.contains("the request is 34.5 %"));
-    assert!(said[2].text.contains("unknown (HR 3938 was not read)"));
-    assert!(fail_safe(V2, &set)[0].text.starts_with("Nothing happens"));
-    assert!(modes(V2, &set)[0].text.contains("REMOTE"));
-    assert!(
-        interlocks(V2, &set)[1]
-            .text
-            .contains("Opening is interlocked now")
-    );
-    let din = &inputs(V2, &set)[0];
-    assert_eq!(
-        (din.name.as_str(), din.function.as_str(), din.is_on),
-        ("DIN1", "Position <= % (3): 20 %", Some(true))
-    );
-    let relay = &relays(V2, &set)[2];
-    assert_eq!(relay.function, "Position >= % (2): 75 %");
-    assert_eq!(relay.contact.as_deref(), Some("Make (1)"));
-    assert_eq!(relay.is_on, Some(true));
-    assert!(relays(V2, &set)[7].function.contains("was not read"));
 }
 
 #[test]
