@@ -78,6 +78,11 @@ fn summary(html: &mut Markup, health: &Health) {
         html.text(&format!("Not read, so not known: {}.", names.join(", ")));
         html.close("p");
     }
+    if !health.untold.is_empty() {
+        let names: Vec<_> = health.untold.iter().map(|m| m.label).collect();
+        let words = format!("This model does not tell: {}.", names.join(", "));
+        html.node("p", "quiet", &words);
+    }
 }
 
 /// One condition with its reason and what to check.

@@ -1,7 +1,7 @@
 //! Who the device is: what function 17, the registers and the cards say, and whether they agree.
 
 use shared::address::{Address, Table};
-use shared::icon3000::identity::{Fact, REPORT, Report, detect, facts};
+use shared::icon3000::identity::{Fact, PROBES, REPORT, Report, detect, facts};
 use shared::icon3000::model::READINGS;
 use shared::map::row::Row;
 use shared::render::Spaced;
@@ -11,10 +11,6 @@ use super::{heading, reading};
 use crate::actuator::state::dossier::{Dossier, Subject};
 use crate::actuator::state::saved::model;
 use crate::markup::Markup;
-
-/// Registers that are asked for one by one, because whether they answer tells the model: one beyond
-/// 3473, and one beyond 21 (reading E84).
-pub const PROBES: [u16; 2] = [3480, 44];
 
 /// Everything about who the device is.
 pub fn identity(html: &mut Markup, dossier: &Dossier, now: i64) {
@@ -258,7 +254,7 @@ mod tests {
         );
     }
 
-    /// Reading E84: HR 44 came with the ICON3000, HR 3480 with the v2. Only exception 02 says that a
+    /// Readings E35 and E84: HR 22 came with the ICON3000, HR 3480 with the v2. Only exception 02 says that a
     /// register is not there; silence says nothing.
     #[test]
     fn what_is_refused_tells_the_model() {
@@ -279,9 +275,9 @@ mod tests {
         }
         assert!(drawn(&dossier).contains(not_known));
         fail(&mut dossier, 3480, Outcome::Exception, 2);
-        fail(&mut dossier, 44, Outcome::Exception, 2);
+        fail(&mut dossier, 22, Outcome::Exception, 2);
         assert!(drawn(&dossier).contains("It is an <b class=\"\">ICON2000v4</b>"));
-        let mut dossier = device(&[(44, &[0x9000])]);
+        let mut dossier = device(&[(22, &[0])]);
         fail(&mut dossier, 3480, Outcome::Exception, 2);
         assert!(drawn(&dossier).contains("It is an <b class=\"\">ICON3000</b>"));
         let html = drawn(&device(&[(3480, &[1])]));

@@ -295,7 +295,7 @@ mod tests {
             })
         };
         let mut dossier = Dossier::new("XV", Device::Icon3000);
-        for start in [44, 3480] {
+        for start in [22, 44, 3480] {
             dossier.fail(
                 block(start),
                 Outcome::Exception,

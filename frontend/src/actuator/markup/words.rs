@@ -1,15 +1,15 @@
 //! What the settings say in words: whether a partial stroke could run, positioner, fail-safe, modes,
 //! interlocks, inputs and relays.
 
-use shared::address::Table;
 use shared::icon3000::words::{
     Contact, Statement, Truth, fail_safe, inputs, interlocks, modes, positioner, pst, relays,
 };
-use shared::map::row::{Row, Source};
+use shared::map::row::Source;
 use shared::problem::Severity;
 
 use super::tools::read_at;
 use crate::actuator::state::dossier::Dossier;
+use crate::actuator::state::health::inputs as inputs_of;
 use crate::actuator::state::saved::model;
 use crate::actuator::state::wanted::within;
 use crate::markup::Markup;
@@ -26,20 +26,15 @@ pub const REGISTERS: [(u16, u16); 8] = [
     (3940, 1),
 ];
 
-/// Input registers from 0 on that an ICON2000v4 has in their stead; its bits are discrete inputs.
-pub const INPUTS: u16 = 5;
-
 /// All sentences.
 pub fn words(html: &mut Markup, dossier: &Dossier, now: i64) {
     let Some(model) = model(dossier.device) else {
         return;
     };
     let image = &dossier.image;
-    let told = |row: &Row| match row.table {
-        Table::Input => row.address.get() < INPUTS,
-        _ => within(row, &REGISTERS),
-    };
-    read_at(html, dossier, &dossier.rows(&told), now);
+    let mut rows = dossier.rows(&|row| within(row, &REGISTERS));
+    rows.extend(inputs_of(dossier));
+    read_at(html, dossier, &rows, now);
     let test = pst(model, image);
     html.open("div", &[("class", "icon-words")]);
     html.open("section", &[("data-testid", "words-pst")]);
@@ -95,16 +90,15 @@ fn statements(html: &mut Markup, statements: &[Statement]) {
         if said.inferred {
             html.node("em", "trust", "inferred").text(" ");
         }
-        proof(html, &said.registers, &said.source);
+        proof(html, &said.from, &said.source);
         html.close("li");
     }
     html.close("ul");
 }
 
 /// Where a sentence comes from.
-fn proof(html: &mut Markup, registers: &[u16], source: &Source) {
-    let registers: Vec<_> = registers.iter().map(|r| format!("HR {r}")).collect();
-    let text = format!("{} · {source}", registers.join(", "));
+fn proof(html: &mut Markup, from: &[String], source: &Source) {
+    let text = format!("{} · {source}", from.join(", "));
     html.node("span", "quiet proof", &text);
 }
 
@@ -186,6 +180,25 @@ mod tests {
             answer.split("</p>").next().unwrap().contains("No."),
             "{html}"
         );
+    }
+
+    /// On an ICON2000v4 discrete input 5 is what bit 5 of HR 3001 is later: REMOTE (tables 2 and 5).
+    #[test]
+    fn an_older_model_tells_by_its_inputs() {
+        let mut dossier = Dossier::new("x", shared::device::Device::Icon2000v4);
+        let addresses: Vec<_> = inputs_of(&dossier)
+            .iter()
+            .map(|r| r.address.get())
+            .collect();
+        assert_eq!((addresses.len(), addresses.first()), (30 + 5, Some(&0)));
+        let response = [2, 4, 0b0010_0000, 0, 0, 0];
+        assert!(dossier.absorb(&[2, 0, 0, 0, 30], &response, 1));
+        let html = drawn(&dossier);
+        assert!(
+            html.contains("in REMOTE") && html.contains("DI 5"),
+            "{html}"
+        );
+        assert!(html.contains("read-at"));
     }
 
     #[test]

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use leptos::prelude::*;
 use shared::address::Table;
-use shared::map::row::{Model, Row};
+use shared::icon3000::identity::PROBES;
+use shared::map::row::Row;
 use shared::proto::{Block, TableName};
 
 use super::{charts, save};
@@ -128,27 +129,13 @@ fn failures(store: Store, shows: fn(Subject) -> bool) -> Draw {
 }
 
 fn all_settings(dossier: &Dossier) -> Wanted {
-    let mut wanted = Wanted {
+    Wanted {
         what: "settings".to_owned(),
         ..Wanted::default()
     }
     .rows(&configuration::writable(dossier))
-    .registers(dossier, &words::REGISTERS);
-    if let Some(map) = dossier
-        .device
-        .map()
-        .filter(|map| map.model == Model::Icon2000v4)
-    {
-        // What later models tell in registers stands in its inputs.
-        let inputs = |row: &Row| match row.table {
-            Table::Discrete => true,
-            Table::Input => row.address.get() < words::INPUTS,
-            _ => false,
-        };
-        let rows: Vec<_> = map.rows.iter().copied().filter(|row| inputs(row)).collect();
-        wanted = wanted.rows(&rows);
-    }
-    wanted
+    .registers(dossier, &words::REGISTERS)
+    .rows(&health::inputs(dossier))
 }
 
 /// All that can be set.
@@ -274,7 +261,7 @@ fn who(dossier: &Dossier) -> Wanted {
     .registers(dossier, &WHO)
     .rows(&dossier.rows(&of_inputs));
     // Each by itself, whatever the map says: whether they answer tells the model.
-    wanted.blocks.extend(identity::PROBES.map(|start| Block {
+    wanted.blocks.extend(PROBES.map(|start| Block {
         table: TableName::Holding,
         start,
         count: 1,

@@ -1,6 +1,5 @@
 //! Torque signatures: every curve that a device holds, from its registers and from its files.
 
-use shared::address::Table;
 use shared::few;
 use shared::icon3000::curve::{Curve, Direction, Origin, Which};
 use shared::map::row::{Kind, Row};
@@ -94,16 +93,8 @@ pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
 fn of_registers(dossier: &Dossier, row: &'static Row) -> Option<Trace> {
     let bytes = dossier.image.bytes(row)?;
     let curve = Curve::of_registers(row, &bytes)?;
-    let key = format!("{}-{}", short(row).to_ascii_lowercase(), row.address);
+    let key = format!("{}-{}", row.table.short().to_ascii_lowercase(), row.address);
     Some(trace(curve, key))
-}
-
-/// Holding or input register.
-pub(super) const fn short(row: &Row) -> &'static str {
-    match row.table {
-        Table::Input => "IR",
-        _ => "HR",
-    }
 }
 
 fn trace(curve: Curve, key: String) -> Trace {
@@ -116,7 +107,7 @@ fn trace(curve: Curve, key: String) -> Trace {
         Origin::Register(row) => {
             let first = row.address.get();
             let last = first.saturating_add(row.words).saturating_sub(1);
-            format!("{} {first} to {last}", short(row))
+            format!("{} {first} to {last}", row.table.short())
         }
         Origin::File(number) => format!("file {number}"),
     };

@@ -285,7 +285,7 @@ impl Dossier {
         let table = Table::from(block.table);
         let row = |map: &'static DeviceMap| map.row_at(table, Address::new(block.start));
         let row = self.device.map().and_then(row);
-        row.is_some_and(|row| row.access != Access::Absent)
+        row.is_some_and(|row| row.access != Access::Absent && row.kind != Kind::Reserved)
     }
 
     /// Date and time of the device: two registers each. The ICON2000v4 has none but the first.

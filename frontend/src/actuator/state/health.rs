@@ -1,11 +1,12 @@
 //! What is wrong with the device, by NAMUR NE 107, the worst first.
 
+use shared::address::Table;
 use shared::few;
 use shared::icon3000::model::{HEALTH, Meaning};
-use shared::map::row::{Kind, Row, Set};
+use shared::map::row::{DeviceMap, Kind, Model, Row, Set};
 
 use super::dossier::Dossier;
-use super::logs::Table;
+use super::logs::Table as Log;
 
 /// A code of a log.
 #[derive(Clone, Debug)]
@@ -21,13 +22,33 @@ pub struct Past {
 }
 
 /// The words of a device that say what is wrong, in the order of the map. The holding registers
-/// have them all; an ICON2000v4 has them in its input registers.
+/// have them all but on an ICON2000v4.
 #[must_use]
 pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
-    dossier.rows(&|row| {
-        let told = |set: &Set| HEALTH.iter().any(|m| m.set == set.name);
-        row.kind == Kind::Bits && row.set.is_some_and(told)
-    })
+    let mut rows = inputs(dossier);
+    if rows.is_empty() {
+        rows = dossier.rows(&|row| {
+            let told = |set: &Set| HEALTH.iter().any(|m| m.set == set.name);
+            row.kind == Kind::Bits && row.set.is_some_and(told)
+        });
+    }
+    rows
+}
+
+/// The inputs of an ICON2000v4 that tell what later models have in holding registers: its state,
+/// alarms, warnings and measurements. No others have any.
+#[must_use]
+pub fn inputs(dossier: &Dossier) -> Vec<&'static Row> {
+    let old = |map: &&DeviceMap| map.model == Model::Icon2000v4;
+    let Some(map) = dossier.device.map().filter(old) else {
+        return Vec::new();
+    };
+    let told = |row: &&Row| match row.table {
+        Table::Discrete => row.kind != Kind::Reserved,
+        Table::Input => row.address.get() < 5,
+        _ => false,
+    };
+    map.rows.iter().copied().filter(told).collect()
 }
 
 /// What the logs of alarms and warnings tell, the latest first, at most so many.
@@ -35,7 +56,7 @@ pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
 pub fn past(dossier: &Dossier, most: usize) -> Vec<Past> {
     let mut found: Vec<Past> = Vec::new();
     for (file, set) in [(2, "alarm_code"), (3, "warning_code")] {
-        for row in Table::of(dossier, file).rows {
+        for row in Log::of(dossier, file).rows {
             let code = row.cells.first().cloned().flatten().and_then(|c| c.number);
             let mut meanings = HEALTH.iter();
             let meaning = meanings.find(|m| m.set == set && Some(i64::from(m.value)) == code);
@@ -65,16 +86,15 @@ mod tests {
     /// Everything that the list of conditions needs is read.
     #[test]
     fn every_word_of_the_list_is_read() {
-        let dossier = device(&[]);
-        let wanted: Vec<_> = rows(&dossier).iter().map(|r| r.address.get()).collect();
-        let health =
-            shared::icon3000::health::health(model(dossier.device).unwrap(), &dossier.image);
-        assert!(
-            health
-                .unread
-                .iter()
-                .all(|r| wanted.contains(&r.address.get()))
-        );
+        for device in [Device::Icon2000v4, Device::Icon3000, Device::Icon3000v2] {
+            let dossier = Dossier::new("x", device);
+            let wanted = rows(&dossier);
+            let model = model(device).unwrap();
+            let health = shared::icon3000::health::health(model, &dossier.image);
+            assert!(!health.unread.is_empty());
+            let read = |row: &&&Row| wanted.iter().any(|w| core::ptr::eq(*w, **row));
+            assert_eq!(health.unread.iter().find(|r| !read(r)), None, "{device:?}");
+        }
         assert!(rows(&Dossier::new("x", Device::None)).is_empty());
     }
 

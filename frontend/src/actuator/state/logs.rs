@@ -11,7 +11,6 @@ use shared::icon3000::{Item, Log};
 use shared::map::row::Row as MapRow;
 use shared::value::{Quality, Value};
 
-use super::curves::short;
 use super::dossier::Dossier;
 use super::wanted::LIMITS;
 use crate::chart::table::quote;
@@ -154,7 +153,7 @@ impl Table {
         let rows = dossier.rows(&|row| row.key.starts_with(list));
         if let (Some(first), Some(last)) = (rows.first(), rows.last()) {
             let end = last.address.get() + last.words - 1;
-            self.place = format!("{} {} to {end}", short(first), first.address);
+            self.place = format!("{} {} to {end}", first.table.short(), first.address);
             self.source = first.source.to_string();
         }
         for (number, entry) in (1..).zip(rows.chunks(3)) {

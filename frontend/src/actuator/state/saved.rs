@@ -55,7 +55,7 @@ pub fn snapshot(dossier: &Dossier, now: i64) -> Option<Snapshot> {
         .filter_map(|sub| Some((*sub, dossier.count(*sub)?.count)))
         .collect();
     snapshot.files = dossier.all_files();
-    for failure in dossier.failed.values() {
+    for failure in dossier.failed.values().filter(|f| dossier.has(f.step)) {
         let part = match failure.step {
             IconStep::Block(block) => Part::Block(
                 Table::from(block.table),
