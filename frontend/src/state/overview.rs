@@ -193,7 +193,17 @@ impl Overview {
             return Self::default();
         };
         if device == Device::Icon2000v4 {
-            return Self::of(Device::Icon3000, &as_later(image));
+            let mut seen = Self::of(Device::Icon3000, &as_later(image));
+            let bits = seen.status.iter_mut().chain(&mut seen.alarms);
+            for bit in bits.chain(&mut seen.warnings) {
+                let at = bit.row.address.get();
+                let (table, own) = match at {
+                    3009.. => (Table::Input, at - 3007),
+                    _ => (Table::Discrete, (at - 3001) * 16 + bit.member.value),
+                };
+                bit.row = map.row_at(table, Address::new(own)).unwrap_or(bit.row);
+            }
+            return seen;
         }
         let look = Lookup { map, image };
         if !device.is_icon() {
@@ -389,7 +399,18 @@ mod tests {
         assert!(seen.known && seen.close_limit && !seen.open_limit);
         assert_eq!(seen.position.unwrap().text, "24.0");
         assert_eq!(seen.torque.unwrap().text, "-12");
-        assert_eq!((seen.warnings.len(), seen.alarms.len()), (1, 1));
+        let place = |bit: &Active| (bit.row.table, bit.row.address.get(), bit.member.value);
+        let places: Vec<_> = seen
+            .warnings
+            .iter()
+            .chain(&seen.alarms)
+            .map(place)
+            .collect();
+        assert_eq!(places, [(Table::Input, 2, 2), (Table::Input, 4, 1)]);
+        image.set(Table::Discrete, Address::new(21), 1, Micros::new(9));
+        let seen = Overview::of(Device::Icon2000v4, &image);
+        let places: Vec<_> = seen.status.iter().map(place).collect();
+        assert_eq!(places, [(Table::Discrete, 21, 5)], "hardwired remote mode");
         // The same as the data say of it.
         for mirror in &shared::icon3000::model::MIRRORS {
             let at = mirror.address;

@@ -295,9 +295,8 @@ mod tests {
 
     #[test]
     fn an_older_model_says_what_it_has_not() {
-        let open = |dossier: &Dossier| {
-            drawn(|html| choose(html, logs_of(dossier), 2, |query| query.to_owned()))
-        };
+        let open =
+            |dossier: &Dossier| drawn(|html| choose(html, logs_of(dossier), 2, str::to_owned));
         let html = open(&Dossier::new("x", Device::Icon3000));
         assert_eq!(html.matches("icon-log-").count(), 2, "{html}");
         assert!(html.contains("came with the ICON3000v2"));

@@ -63,7 +63,7 @@ pub(super) fn fill_once(store: Store, wanted: fn(&Dossier) -> Wanted) {
     let ready = memo(move || {
         let known = store
             .site
-            .with(|s| s.dossier.device.is_icon() && s.job.is_none());
+            .with(|s| s.dossier.device.is_icon() && s.shown_job().is_none());
         store.is_live() && store.online.get() && known
     });
     let asked = StoredValue::new(String::new());

@@ -257,6 +257,26 @@ mod tests {
         assert_eq!((job.done, job.total), (3, 3));
     }
 
+    /// One request may hold parts of several files: all of them failed, whichever step it was for;
+    /// asked for one by one, each tells of itself.
+    #[test]
+    fn a_failure_names_every_file_of_its_request() {
+        use crate::actuator::state::dossier::Subject;
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        let mut job = Job::new(1, wanted(), &dossier, 0, 0).unwrap();
+        let both = "140E06000200000001".to_owned() + "06000300000001";
+        job.hear(&exchange(0, &both, "", Outcome::Silence), &mut dossier);
+        let codes = |dossier: &Dossier| -> Vec<_> {
+            let failed = dossier.failed.iter();
+            failed.map(|(subject, f)| (*subject, f.code)).collect()
+        };
+        let (two, three) = (Subject::File(2), Subject::File(3));
+        assert_eq!(codes(&dossier), [(two, 0), (three, 0)]);
+        let refused = exchange(0, "140706000300000001", "9402", Outcome::Exception);
+        job.hear(&refused, &mut dossier);
+        assert_eq!(codes(&dossier), [(two, 0), (three, 2)]);
+    }
+
     #[test]
     fn an_answer_that_does_not_fit_is_a_failure() {
         let mut dossier = Dossier::new("XV", Device::Icon3000v2);
