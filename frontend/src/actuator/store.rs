@@ -289,7 +289,7 @@ impl Store {
         }
         let (id, now) = (self.next_id(), self.guest.now_us());
         let ask = self.site.try_update(|site| {
-            site.saving = false;
+            site.saving &= wanted.quiet;
             site.job = Job::new(id, wanted, &site.dossier, since, now);
             let job = site.job.as_ref()?;
             Some(IconAsk::Read {

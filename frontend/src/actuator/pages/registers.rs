@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use leptos::prelude::*;
-use shared::address::Table;
 use shared::icon3000::identity::PROBES;
-use shared::map::row::Row;
 use shared::proto::{Block, TableName};
 
 use super::{charts, save};
@@ -258,8 +256,7 @@ fn who(dossier: &Dossier) -> Wanted {
         files: (5300..=5304).collect(),
         ..Wanted::default()
     }
-    .registers(dossier, &WHO)
-    .rows(&dossier.rows(&of_inputs));
+    .rows(&dossier.rows(&identity::is_told));
     // Each by itself, whatever the map says: whether they answer tells the model.
     wanted.blocks.extend(PROBES.map(|start| Block {
         table: TableName::Holding,
@@ -268,23 +265,6 @@ fn who(dossier: &Dossier) -> Wanted {
     }));
     wanted
 }
-
-/// Test date and nominal torque, where they stand in the input registers only.
-fn of_inputs(row: &Row) -> bool {
-    row.table == Table::Input && row.group == "Identity"
-}
-
-/// Registers that say who the device is: numbers, tags, versions, types, dates, and those that say
-/// it once more.
-const WHO: [(u16, u16); 7] = [
-    (19, 2),
-    (3000, 1),
-    (3034, 54),
-    (3460, 14),
-    (3654, 2),
-    (3742, 47),
-    (3909, 2),
-];
 
 /// Who the device is.
 #[component]
