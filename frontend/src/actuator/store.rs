@@ -1,12 +1,14 @@
 //! What the program knows, as signals: the device on the line, saved devices, the clock.
 
+mod site;
+
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Duration;
 
 use leptos::prelude::*;
 use shared::device::Device;
-use shared::proto::{IconAsk, IconNews, ToPage};
+use shared::proto::{IconAsk, ToPage};
 
 use super::state::dossier::Dossier;
 use super::state::job::Job;
@@ -14,6 +16,9 @@ use super::state::wanted::Wanted;
 use crate::erased::{effect, memo};
 use crate::guest::Guest;
 use crate::state::wire;
+
+pub use site::Site;
+use site::device_of;
 
 thread_local! {
     /// What stays while the program is not shown: the page closes it with every change of screen,
@@ -34,21 +39,6 @@ pub struct Saved {
     pub dossier: Arc<Dossier>,
     /// What is wrong with its file.
     pub problems: Vec<String>,
-}
-
-/// The device on the line.
-#[derive(Clone, Debug, Default)]
-pub struct Site {
-    /// What was read of it.
-    pub dossier: Dossier,
-    /// What is being read.
-    pub job: Option<Job>,
-    /// A read that was ended before it was whole, and from when on its answers count.
-    pub broken: Option<(Wanted, u64)>,
-    /// How the last read ended, in words.
-    pub last: String,
-    /// True while it is asked whether to save what is not whole.
-    pub saving: bool,
 }
 
 /// The store.
@@ -362,71 +352,6 @@ impl Store {
     }
 }
 
-impl Site {
-    /// What is being read because somebody asked for it.
-    #[must_use]
-    pub fn shown_job(&self) -> Option<&Job> {
-        self.job.as_ref().filter(|job| !job.wanted.quiet)
-    }
-
-    /// The connection is gone: nothing of what was asked comes back.
-    pub fn lost(&mut self) {
-        self.stop("The connection was lost.");
-    }
-
-    /// Ends the read under way, and says why; it can be gone on with.
-    fn stop(&mut self, why: &str) {
-        if let Some(job) = self.job.take().filter(|job| !job.wanted.quiet) {
-            self.broken = Some((job.wanted.clone(), job.since()));
-            why.clone_into(&mut self.last);
-        }
-    }
-
-    /// A backend said hello. Its clock may be another one than before: then no time in here counts.
-    fn greeted(&mut self, device: Option<(Device, u8)>, start_wall_ms: u64) {
-        let before = self.dossier.start_wall_ms;
-        if before != 0 && before.abs_diff(start_wall_ms) > 5000 {
-            self.dossier = Dossier::new(&self.dossier.tag, Device::None);
-            self.job = None;
-            self.broken = None;
-        }
-        self.dossier.start_wall_ms = start_wall_ms;
-        let (device, unit) = device.unwrap_or_default();
-        self.dossier.device = device;
-        self.dossier.unit = unit;
-    }
-
-    /// Takes news in; what to ask for next, if something is still missing.
-    fn hear(&mut self, news: &IconNews, next: StoredValue<u32>, now: u64) -> Option<IconAsk> {
-        let job = self.job.as_mut().filter(|job| job.id == id_of(news))?;
-        job.touch(now);
-        if !job.hear(news, &mut self.dossier) {
-            return None;
-        }
-        let id = next.get_value();
-        if job.next(id, &self.dossier) {
-            next.set_value(id.wrapping_add(1));
-            return Some(IconAsk::Read {
-                id,
-                device: self.dossier.tag.clone(),
-                steps: job.steps().to_vec(),
-            });
-        }
-        let job = self.job.take().filter(|job| !job.wanted.quiet)?;
-        let requests = crate::format::count(u64::from(job.done), "request");
-        let whole = job.is_whole(&self.dossier);
-        self.last = if job.cancelled {
-            format!("Cancelled after {requests}.")
-        } else {
-            format!("{requests} done.")
-        };
-        if !whole {
-            self.broken = Some((job.wanted.clone(), job.since()));
-        }
-        None
-    }
-}
-
 /// What is known of a device from an earlier visit, or a device of which nothing is known.
 fn kept(tag: &str) -> Site {
     let kept = KEPT.with_borrow(|kept| kept.sites.iter().find(|s| s.dossier.tag == tag).cloned());
@@ -434,22 +359,6 @@ fn kept(tag: &str) -> Site {
         dossier: Dossier::new(tag, Device::None),
         ..Site::default()
     })
-}
-
-const fn id_of(news: &IconNews) -> u32 {
-    match news {
-        IconNews::Exchange { id, .. }
-        | IconNews::Progress { id, .. }
-        | IconNews::Done { id, .. } => *id,
-    }
-}
-
-const fn device_of(news: &IconNews) -> &String {
-    match news {
-        IconNews::Exchange { device, .. }
-        | IconNews::Progress { device, .. }
-        | IconNews::Done { device, .. } => device,
-    }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "seconds since 1970")]
