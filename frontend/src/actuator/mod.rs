@@ -17,6 +17,11 @@
 //! | where | hooks |
 //! |---|---|
 //! | everywhere | `icon-read`, `icon-cancel`, `icon-resume`, `icon-job` (text), `icon-failed` (`data-subject`), `icon-nothing` |
+//! | toolbar | `icon-save`, `icon-gaps` (what is missing), `icon-save-gaps`, `icon-whole` |
+//! | health, words, identity, counters | `read-at` |
+//! | logs | `log-raw` |
+//! | strokes | `stroke-raw` |
+//! | snapshots | `compare-fresh` |
 //! | rows | `icon-row` (`data-address`, `data-key`, `data-quality`), in it `icon-value` |
 
 pub mod markup;

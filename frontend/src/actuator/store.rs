@@ -1,12 +1,14 @@
 //! What the program knows, as signals: the device on the line, saved devices, the clock.
 
+mod site;
+
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Duration;
 
 use leptos::prelude::*;
 use shared::device::Device;
-use shared::proto::{IconAsk, IconNews, ToPage};
+use shared::proto::{IconAsk, ToPage};
 
 use super::state::dossier::Dossier;
 use super::state::job::Job;
@@ -14,6 +16,9 @@ use super::state::wanted::Wanted;
 use crate::erased::{effect, memo};
 use crate::guest::Guest;
 use crate::state::wire;
+
+pub use site::Site;
+use site::device_of;
 
 thread_local! {
     /// What stays while the program is not shown: the page closes it with every change of screen,
@@ -34,19 +39,6 @@ pub struct Saved {
     pub dossier: Arc<Dossier>,
     /// What is wrong with its file.
     pub problems: Vec<String>,
-}
-
-/// The device on the line.
-#[derive(Clone, Debug, Default)]
-pub struct Site {
-    /// What was read of it.
-    pub dossier: Dossier,
-    /// What is being read.
-    pub job: Option<Job>,
-    /// A read that was ended before it was whole, and from when on its answers count.
-    pub broken: Option<(Wanted, u64)>,
-    /// How the last read ended, in words.
-    pub last: String,
 }
 
 /// The store.
@@ -111,8 +103,7 @@ impl Store {
         effect(move || {
             let tag = store.tag.get();
             if store.site.with_untracked(|s| s.dossier.tag != tag) {
-                store.site.set(kept(&tag));
-                store.greet();
+                store.visit(&tag);
             }
         });
         guest.listen(move |text| store.hear(text));
@@ -181,20 +172,26 @@ impl Store {
         })
     }
 
+    /// Turns to a device on the line, whatever the address says, and keeps what is known of the one
+    /// before.
+    pub fn visit(self, tag: &str) {
+        if self.site.with_untracked(|s| s.dossier.tag != tag) {
+            self.keep();
+            self.site.set(kept(tag));
+            self.greet();
+        }
+    }
+
     fn hear(self, text: &str) {
-        // The program may be closed by now.
-        let Some(tag) = self.tag.try_get_untracked() else {
-            return;
-        };
         if let Some(news) = wire::icon::read(text) {
-            if *device_of(&news) == tag {
-                let mut next = None;
-                let now = self.guest.now_us();
-                self.site
-                    .update(|site| next = site.hear(&news, self.next, now));
-                if let Some(ask) = next {
-                    self.send(&ask);
-                }
+            let now = self.guest.now_us();
+            // The program may be closed by now.
+            let next = self.site.try_update(|site| {
+                let ours = *device_of(&news) == site.dossier.tag;
+                ours.then(|| site.hear(&news, self.next, now)).flatten()
+            });
+            if let Some(ask) = next.flatten() {
+                self.send(&ask);
             }
         } else if let Ok(hello @ ToPage::Hello { .. }) = wire::read(text) {
             self.greeting.set_value(Some(hello));
@@ -246,6 +243,9 @@ impl Store {
 
     /// Reads all of these anew.
     pub fn read(self, wanted: Wanted) {
+        if !wanted.quiet {
+            self.site.update(|site| site.broken = None);
+        }
         self.begin(wanted, self.guest.now_us());
     }
 
@@ -258,28 +258,38 @@ impl Store {
     pub fn resume(self) {
         let broken = self.site.try_update(|site| site.broken.take()).flatten();
         if let Some((wanted, since)) = broken {
-            // What failed then is tried again.
-            self.site.update(|site| site.dossier.failed.clear());
+            // What failed then is tried again, and is on the list until it is answered.
+            self.site.update(|site| {
+                let failed = site.dossier.failed.values_mut();
+                failed.for_each(|failure| failure.again = true);
+            });
             self.begin(wanted, since);
         }
     }
 
     fn begin(self, wanted: Wanted, since: u64) {
-        if self.site.with_untracked(|s| s.job.is_some()) || !self.online.get_untracked() {
+        if !self.online.get_untracked() {
             return;
         }
+        let under_way = |s: &Site| s.job.as_ref().map(|job| (job.id, job.wanted.quiet));
+        match self.site.with_untracked(under_way) {
+            Some((id, true)) if !wanted.quiet => self.send(&IconAsk::Cancel { id }),
+            Some(_) => return,
+            None => {}
+        }
         let (id, now) = (self.next_id(), self.guest.now_us());
-        let mut steps = Vec::new();
-        self.site.update(|site| {
+        let ask = self.site.try_update(|site| {
+            site.saving &= wanted.quiet;
             site.job = Job::new(id, wanted, &site.dossier, since, now);
-            site.broken = None;
-            if let Some(job) = &site.job {
-                steps = job.steps().to_vec();
-            }
+            let job = site.job.as_ref()?;
+            Some(IconAsk::Read {
+                id,
+                device: site.dossier.tag.clone(),
+                steps: job.steps().to_vec(),
+            })
         });
-        if !steps.is_empty() {
-            let device = self.tag.get_untracked();
-            self.send(&IconAsk::Read { id, device, steps });
+        if let Some(ask) = ask.flatten() {
+            self.send(&ask);
         }
     }
 
@@ -328,10 +338,10 @@ impl Store {
         let site = self.site.try_update_untracked(core::mem::take);
         let saved = self.saved.try_get_untracked().unwrap_or_default();
         let mut site = site.unwrap_or_default();
-        if let Some(job) = site.job.take() {
+        if let Some(job) = &site.job {
             self.send(&IconAsk::Cancel { id: job.id });
-            site.broken = Some((job.wanted.clone(), job.since()));
         }
+        site.stop("");
         KEPT.with_borrow_mut(|kept| {
             kept.saved = saved;
             if !site.dossier.tag.is_empty() {
@@ -342,65 +352,6 @@ impl Store {
     }
 }
 
-impl Site {
-    /// The connection is gone: nothing of what was asked comes back.
-    pub fn lost(&mut self) {
-        self.stop("The connection was lost.");
-    }
-
-    /// Ends the read under way, and says why; it can be gone on with.
-    fn stop(&mut self, why: &str) {
-        if let Some(job) = self.job.take() {
-            self.broken = Some((job.wanted.clone(), job.since()));
-            why.clone_into(&mut self.last);
-        }
-    }
-
-    /// A backend said hello. Its clock may be another one than before: then no time in here counts.
-    fn greeted(&mut self, device: Option<(Device, u8)>, start_wall_ms: u64) {
-        let before = self.dossier.start_wall_ms;
-        if before != 0 && before.abs_diff(start_wall_ms) > 5000 {
-            self.dossier = Dossier::new(&self.dossier.tag, Device::None);
-            self.job = None;
-            self.broken = None;
-        }
-        self.dossier.start_wall_ms = start_wall_ms;
-        let (device, unit) = device.unwrap_or_default();
-        self.dossier.device = device;
-        self.dossier.unit = unit;
-    }
-
-    /// Takes news in; what to ask for next, if something is still missing.
-    fn hear(&mut self, news: &IconNews, next: StoredValue<u32>, now: u64) -> Option<IconAsk> {
-        let job = self.job.as_mut().filter(|job| job.id == id_of(news))?;
-        job.touch(now);
-        if !job.hear(news, &mut self.dossier) {
-            return None;
-        }
-        let id = next.get_value();
-        if job.next(id, &self.dossier) {
-            next.set_value(id.wrapping_add(1));
-            return Some(IconAsk::Read {
-                id,
-                device: self.dossier.tag.clone(),
-                steps: job.steps().to_vec(),
-            });
-        }
-        let job = self.job.take()?;
-        let requests = crate::format::count(u64::from(job.done), "request");
-        let whole = job.is_whole(&self.dossier);
-        self.last = if job.cancelled {
-            format!("Cancelled after {requests}.")
-        } else {
-            format!("{requests} done.")
-        };
-        if !whole {
-            self.broken = Some((job.wanted.clone(), job.since()));
-        }
-        None
-    }
-}
-
 /// What is known of a device from an earlier visit, or a device of which nothing is known.
 fn kept(tag: &str) -> Site {
     let kept = KEPT.with_borrow(|kept| kept.sites.iter().find(|s| s.dossier.tag == tag).cloned());
@@ -408,22 +359,6 @@ fn kept(tag: &str) -> Site {
         dossier: Dossier::new(tag, Device::None),
         ..Site::default()
     })
-}
-
-const fn id_of(news: &IconNews) -> u32 {
-    match news {
-        IconNews::Exchange { id, .. }
-        | IconNews::Progress { id, .. }
-        | IconNews::Done { id, .. } => *id,
-    }
-}
-
-const fn device_of(news: &IconNews) -> &String {
-    match news {
-        IconNews::Exchange { device, .. }
-        | IconNews::Progress { device, .. }
-        | IconNews::Done { device, .. } => device,
-    }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "seconds since 1970")]

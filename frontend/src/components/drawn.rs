@@ -152,7 +152,8 @@ fn attributes(old: &Element, new: &Element) {
         names.iter().filter_map(|n| n.as_string()).collect()
     };
     for name in names(old) {
-        if !new.has_attribute(&name) {
+        // What somebody opened stays open.
+        if !new.has_attribute(&name) && name != "open" {
             // Fails only for names that are none.
             let _infallible = old.remove_attribute(&name);
         }

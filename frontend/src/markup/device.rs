@@ -1,5 +1,6 @@
 //! A device in the list of all, and what its valve does.
 
+use shared::address::Table;
 use shared::proto::{NO_POLLING, Outcome};
 
 use super::Markup;
@@ -266,7 +267,13 @@ fn list(html: &mut Markup, title: &str, bits: &[Active], mark: Option<Sign>) {
             sign(html, mark, "18");
         }
         html.node("span", "", bit.member.label);
-        let place = format!("{} bit {}", bit.row.address, bit.member.value);
+        let mut place = bit.row.address.to_string();
+        if bit.row.table != Table::Holding {
+            place = format!("{} {place}", bit.row.table.short());
+        }
+        if !bit.row.table.is_bits() {
+            place.push_str(&format!(" bit {}", bit.member.value));
+        }
         html.node("code", "quiet", &place).close("li");
     }
     html.close("ul");

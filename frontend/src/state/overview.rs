@@ -1,6 +1,6 @@
 //! What a valve does, from the words of its actuator.
 
-use shared::address::Table;
+use shared::address::{Address, Table};
 use shared::device::Device;
 use shared::image::{Image, Seen};
 use shared::map::row::{DeviceMap, Member, Row};
@@ -236,6 +236,19 @@ impl Overview {
         let Some(map) = device.map() else {
             return Self::default();
         };
+        if device == Device::Icon2000v4 {
+            let mut seen = Self::of(Device::Icon3000, &as_later(image));
+            let bits = seen.status.iter_mut().chain(&mut seen.alarms);
+            for bit in bits.chain(&mut seen.warnings) {
+                let at = bit.row.address.get();
+                let (table, own) = match at {
+                    3009.. => (Table::Input, at - 3007),
+                    _ => (Table::Discrete, (at - 3001) * 16 + bit.member.value),
+                };
+                bit.row = map.row_at(table, Address::new(own)).unwrap_or(bit.row);
+            }
+            return seen;
+        }
         let look = Lookup { map, image };
         if !device.is_icon() {
             return look.field_unit();
@@ -306,6 +319,26 @@ impl Overview {
     }
 }
 
+/// The inputs of an ICON2000v4 at the addresses where later models have them: position, torque,
+/// warnings and alarms, and bits of status (readings E41, E44).
+fn as_later(image: &Image) -> Image {
+    let mut later = Image::new();
+    for (table, address, cell) in image.iter() {
+        let at = address.get();
+        let (home, word) = match (table, at) {
+            (Table::Input, 0..5) => ([3004, 3005, 3009, 3010, 3011][usize::from(at)], cell.word),
+            (Table::Discrete, 0..29) => {
+                let home = Address::new(3001 + at / 16);
+                let known = later.cell(Table::Holding, home).map_or(0, |c| c.word);
+                (home.get(), known | cell.word << (at % 16))
+            }
+            _ => continue,
+        };
+        later.set(Table::Holding, Address::new(home), word, cell.at);
+    }
+    later
+}
+
 fn facts(look: Lookup<'_>) -> Vec<(&'static str, String)> {
     FACTS
         .iter()
@@ -326,14 +359,19 @@ fn holding(start: u16, count: u16) -> Block {
 
 /// The blocks that tell what a valve does: status, position, torque, alarms, clock.
 ///
-/// Source: VCIOM-16345-EN, section 7.4: holding registers 3000 to 3030.
+/// Source: VCIOM-16345-EN, section 7.4: holding registers 3000 to 3030; of an ICON2000v4, discrete
+/// inputs 0 to 28 and input registers 0 to 4.
 #[must_use]
 pub fn watched(device: Device) -> Vec<Block> {
-    // An ICON2000v4 has none of these.
-    if device.is_icon() && device != Device::Icon2000v4 {
-        vec![holding(3000, 31)]
-    } else {
-        Vec::new()
+    let inputs = |table, count| Block {
+        table,
+        start: 0,
+        count,
+    };
+    match device {
+        Device::Icon2000v4 => vec![inputs(TableName::Discrete, 29), inputs(TableName::Input, 5)],
+        _ if device.is_icon() => vec![holding(3000, 31)],
+        _ => Vec::new(),
     }
 }
 
@@ -385,6 +423,49 @@ mod tests {
         assert_eq!(seen.alarms[0].member.key, "motor_thermostat");
         assert_eq!(seen.warnings[0].member.key, "hi_temperature");
         assert!(seen.status.iter().all(|a| !SAID.contains(&a.member.key)));
+    }
+
+    /// Discrete inputs 0 (closed), 5 (REMOTE), 18 (closing); IR 0 to 4: 24.0 %, -12 %, warning 2, no
+    /// alarms 1, alarms 2 bit 1 (tables 2 and 3).
+    #[test]
+    fn an_older_model_is_told_by_its_inputs() {
+        let mut image = Image::new();
+        let bits = [2, 4, 0b0010_0001, 0, 0b0000_0100, 0];
+        image
+            .absorb(&[2, 0, 0, 0, 29], &bits, Micros::new(9))
+            .unwrap();
+        let words = [4, 10, 0, 240, 0xFF, 0xF4, 0, 4, 0, 0, 0, 2];
+        image
+            .absorb(&[4, 0, 0, 0, 5], &words, Micros::new(9))
+            .unwrap();
+        let seen = Overview::of(Device::Icon2000v4, &image);
+        assert_eq!((seen.state.as_str(), seen.mode), ("Closing", "Remote"));
+        assert!(seen.known && seen.close_limit && !seen.open_limit);
+        assert_eq!(seen.position.unwrap().text, "24.0");
+        assert_eq!(seen.torque.unwrap().text, "-12");
+        let place = |bit: &Active| (bit.row.table, bit.row.address.get(), bit.member.value);
+        let places: Vec<_> = seen
+            .warnings
+            .iter()
+            .chain(&seen.alarms)
+            .map(place)
+            .collect();
+        assert_eq!(places, [(Table::Input, 2, 2), (Table::Input, 4, 1)]);
+        image.set(Table::Discrete, Address::new(21), 1, Micros::new(9));
+        let seen = Overview::of(Device::Icon2000v4, &image);
+        let places: Vec<_> = seen.status.iter().map(place).collect();
+        assert_eq!(places, [(Table::Discrete, 21, 5)], "hardwired remote mode");
+        // The same as the data say of it.
+        for mirror in &shared::icon3000::model::MIRRORS {
+            let at = mirror.address;
+            let mut one = Image::new();
+            one.set(mirror.table, at, 1, Micros::new(1));
+            let later = as_later(&one);
+            if let Some((_, home, cell)) = later.iter().next() {
+                let bit = mirror.bit.unwrap_or(0);
+                assert_eq!((home, cell.word), (mirror.home, 1 << bit), "{at}");
+            }
+        }
     }
 
     /// Section 3.2.3 of the guide, and a unit whose position counts to 4095.
@@ -445,7 +526,7 @@ mod tests {
 
     #[test]
     fn the_blocks_are_in_the_map() {
-        for device in [Device::Icon3000, Device::Icon3000v2] {
+        for device in [Device::Icon2000v4, Device::Icon3000, Device::Icon3000v2] {
             let map = device.map().unwrap();
             for block in watched(device).into_iter().chain(read_once(device)) {
                 let read = block.read().unwrap();

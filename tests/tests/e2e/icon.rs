@@ -2,6 +2,7 @@
 //! compared, as a person sees it. What a page shows is compared with the words of the snapshot.
 
 mod live;
+mod older;
 
 use serde_json::Value;
 use shared::address::{Address, Table};

@@ -3,8 +3,9 @@
 use shared::address::Table;
 use shared::icon3000::counters::{Counter, NAMES, SOURCE, of_channel};
 use shared::icon3000::model::READINGS;
-use shared::map::row::{Access, Kind, Reading, Row};
+use shared::map::row::{Reading, Row};
 
+use super::tools::when;
 use super::{heading, reading};
 use crate::actuator::state::dossier::Dossier;
 use crate::format::thousands;
@@ -27,18 +28,14 @@ pub fn registers(dossier: &Dossier) -> Vec<&'static Row> {
 /// Registers of the Modbus interface, in the order of the map.
 #[must_use]
 pub fn all_registers(dossier: &Dossier) -> Vec<&'static Row> {
-    let Some(map) = dossier.device.map() else {
-        return Vec::new();
-    };
-    let rows = map.rows_of(Table::Holding).iter().copied();
-    rows.filter(|row| row.group == "Modbus")
-        .filter(|row| row.kind != Kind::Reserved && row.access != Access::Absent)
-        .collect()
+    dossier.rows(&|row| row.group == "Modbus" && row.table == Table::Holding)
 }
 
 /// The counters, by FC 08 and in the registers of both channels.
-pub fn counters(html: &mut Markup, dossier: &Dossier) {
+pub fn counters(html: &mut Markup, dossier: &Dossier, now: i64) {
     heading(html, "Counters", "FC 08 and HR 3531 to 3542");
+    let read = NAMES.iter().filter_map(|c| dossier.count(c.sub));
+    when(html, dossier, read.map(|r| r.at).min(), now);
     html.open("div", &[("class", "icon-table")]);
     html.open("table", &[("class", "plain counters")])
         .open("thead", &[])
@@ -81,11 +78,9 @@ fn row(html: &mut Markup, dossier: &Dossier, counter: &Counter) {
         .close("th");
     let fc08 = dossier.count(counter.sub).map(|r| r.count);
     let channels = [0, 1].map(|channel| of_channel(&dossier.image, counter, channel));
-    let places = ["FC 08".to_owned()]
-        .into_iter()
-        .chain(counter.registers.map(|r| format!("HR {r}")));
+    let places = [None].into_iter().chain(counter.registers.map(Some));
     for (count, place) in [fc08].into_iter().chain(channels).zip(places) {
-        html.open("td", &[("class", "num"), ("title", &place)]);
+        html.open("td", &[("class", "num")]);
         match count {
             Some(count) => {
                 html.text(&thousands(count.into()));
@@ -95,8 +90,18 @@ fn row(html: &mut Markup, dossier: &Dossier, counter: &Counter) {
                 }
             }
             None => {
-                html.node("span", "quiet", "not read");
+                let there = place.is_none_or(|place| has(dossier, place));
+                let why = if there {
+                    "not read"
+                } else {
+                    "not on this model"
+                };
+                html.node("span", "quiet", why);
             }
+        }
+        if let Some(place) = place {
+            html.text(" ")
+                .node("small", "quiet", &format!("HR {place}"));
         }
         html.close("td");
     }
@@ -106,6 +111,16 @@ fn row(html: &mut Markup, dossier: &Dossier, counter: &Counter) {
         reading(html, read);
     }
     html.close("td").close("tr");
+}
+
+/// True if the model has a holding register.
+fn has(dossier: &Dossier, address: u16) -> bool {
+    let block = shared::proto::Block {
+        table: shared::proto::TableName::Holding,
+        start: address,
+        count: 1,
+    };
+    dossier.has(shared::proto::IconStep::Block(block))
 }
 
 /// Reads the counters again and again while it is on.
@@ -130,7 +145,7 @@ mod tests {
         let mut dossier = device(&[(3531, &[1207, 900, 0, 3, 0, 0])]);
         assert!(dossier.absorb(&[8, 0, 13, 0, 0], &[8, 0, 13, 0, 3], 1));
         let mut html = Markup::new();
-        counters(&mut html, &dossier);
+        counters(&mut html, &dossier, 0);
         let html = html.finish();
         assert_eq!(html.matches("data-testid=\"counter\"").count(), 6);
         assert!(
@@ -140,6 +155,20 @@ mod tests {
         // FC 08 but one, and channel 2 throughout.
         assert_eq!(html.matches("not read").count(), 5 + 6);
         assert!(html.contains("E59") && html.contains("E60"));
+    }
+
+    /// HR 3531 and on came with the ICON3000v2 (table 5).
+    #[test]
+    fn an_older_model_has_no_counters_of_channels() {
+        let mut html = Markup::new();
+        counters(
+            &mut html,
+            &Dossier::new("x", shared::device::Device::Icon3000),
+            0,
+        );
+        let html = html.finish();
+        assert_eq!(html.matches("not on this model").count(), 12, "{html}");
+        assert_eq!(html.matches("not read").count(), 6);
     }
 
     #[test]

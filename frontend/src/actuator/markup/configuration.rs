@@ -1,18 +1,15 @@
 //! All that can be set: present value, range, level, and what is out of its range.
 
-use shared::address::{Address, Table};
-use shared::map::row::{Access, Kind, Row};
-use shared::value::{Quality, Value};
+use shared::icon3000::config::{Group, LoggedIn, Setting, configuration, logged_in as level_of};
+use shared::map::row::{Level, Row};
 
-use super::rows::{Around, cell, list};
-use super::{heading, rows};
+use super::heading;
+use super::rows::{Around, level, list};
 use crate::actuator::state::dossier::Dossier;
+use crate::actuator::state::saved::model;
 use crate::format::count;
 use crate::markup::Markup;
-use crate::markup::control::{Choice, tick};
-
-/// The user level logged in.
-const LEVEL: u16 = 3480;
+use crate::markup::control::{Choice, search, tick};
 
 /// What is looked for among the settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -25,66 +22,49 @@ pub struct Filter {
     pub marked: bool,
 }
 
-/// Registers of a device that can be written, in the order of the map.
+/// Registers of a device that can be written, in the groups of the map.
+#[must_use]
+pub fn groups(dossier: &Dossier) -> Vec<Group> {
+    model(dossier.device).map_or_else(Vec::new, |model| configuration(model, &dossier.image))
+}
+
+/// The same as rows, in no order.
 #[must_use]
 pub fn writable(dossier: &Dossier) -> Vec<&'static Row> {
-    let Some(map) = dossier.device.map() else {
-        return Vec::new();
-    };
-    let rows = map.rows_of(Table::Holding).iter().copied();
-    rows.filter(|row| matches!(row.access, Access::Write | Access::WriteGuarded))
-        .filter(|row| row.kind != Kind::Reserved)
+    let groups = groups(dossier);
+    groups
+        .iter()
+        .flat_map(|g| g.settings.iter().map(|s| s.row))
         .collect()
 }
 
-/// Groups in the order in which the map has them first, with their rows.
-#[must_use]
-pub fn groups(rows: &[&'static Row]) -> Vec<(&'static str, Vec<&'static Row>)> {
-    let mut groups: Vec<(&'static str, Vec<&'static Row>)> = Vec::new();
-    for &row in rows {
-        match groups.iter_mut().find(|(name, _)| *name == row.group) {
-            Some((_, rows)) => rows.push(row),
-            None => groups.push((row.group, vec![row])),
-        }
-    }
-    groups
-}
-
-/// True if something speaks against the value of a row.
-#[must_use]
-pub fn is_marked(dossier: &Dossier, row: &'static Row) -> bool {
-    let cell = cell(dossier, row);
-    cell.is_some_and(|c| matches!(c.quality, Quality::OutOfRange | Quality::Invalid))
+/// True if something speaks against the value of a setting.
+const fn is_marked(setting: &Setting) -> bool {
+    setting.outside || setting.differs
 }
 
 impl Filter {
-    fn passes(&self, dossier: &Dossier, row: &'static Row) -> bool {
+    fn passes(&self, setting: &Setting) -> bool {
         let text = self.text.trim().to_ascii_lowercase();
+        let row = setting.row;
         let named = text.is_empty()
             || row.label.to_ascii_lowercase().contains(&text)
-            || row.address.get().to_string().starts_with(&text);
+            || row.address.to_string().starts_with(&text);
         let grouped = self.group.is_empty() || row.group == self.group;
-        named && grouped && (!self.marked || is_marked(dossier, row))
+        named && grouped && (!self.marked || is_marked(setting))
     }
 }
 
 /// The filters.
 pub fn filters(html: &mut Markup, dossier: &Dossier, filter: &Filter) {
-    html.open(
-        "input",
-        &[
-            ("type", "search"),
-            ("data-act", "text"),
-            ("data-testid", "config-filter"),
-            ("data-value", &filter.text),
-            ("value", &filter.text),
-            ("placeholder", "Name or address"),
-            ("aria-label", "Name or address of a setting"),
-            ("data-find", ""),
-        ],
+    search(
+        html,
+        "text",
+        "config-filter",
+        "Name or address",
+        &filter.text,
     );
-    let writable = writable(dossier);
-    let groups = groups(&writable);
+    let groups = groups(dossier);
     Choice {
         act: "group",
         testid: "config-group",
@@ -92,9 +72,10 @@ pub fn filters(html: &mut Markup, dossier: &Dossier, filter: &Filter) {
         value: &filter.group,
         ..Choice::default()
     }
-    .draw(html, groups.iter().map(|(name, _)| (*name, *name)));
-    let marked = writable.iter().filter(|r| is_marked(dossier, r)).count();
-    let words = format!("Out of range ({marked})");
+    .draw(html, groups.iter().map(|g| (g.name, g.name)));
+    let settings = groups.iter().flat_map(|g| &g.settings);
+    let marked = settings.filter(|s| is_marked(s)).count();
+    let words = format!("Out of range, or not as its mirror ({marked})");
     tick(html, "marked", "config-marked", &words, filter.marked);
 }
 
@@ -105,44 +86,55 @@ pub fn logged_in(html: &mut Markup, dossier: &Dossier) {
         &[("class", "icon-level-now"), ("data-testid", "level")],
     );
     html.text("User level logged in: ");
-    let row = dossier
-        .device
-        .map()
-        .and_then(|map| map.row_at(Table::Holding, Address::new(LEVEL)))
-        .filter(|row| row.access != Access::Absent);
-    match row {
-        Some(row) => {
-            let cell = cell(dossier, row);
-            rows::value(html, row, cell.as_ref());
-            let words = match dossier.image.row(row).map(|seen| seen.judged.value) {
-                Some(Value::Code { raw: 0, .. }) => {
+    let quiet = |html: &mut Markup, words: &str| {
+        html.node("span", "quiet", words);
+    };
+    let level_now = model(dossier.device).map(|model| level_of(model, &dossier.image));
+    match level_now {
+        Some(LoggedIn::Level(now)) => {
+            html.node("b", "", level(now)).text(match now {
+                Level::Observer => {
                     " Nothing but a login is accepted; other writes are discarded without an error."
                 }
-                Some(Value::Code { raw: 1, .. }) => {
+                Level::User => {
                     " The level after power-up. Writes that need Service are discarded without an error."
                 }
-                _ => "",
-            };
-            html.text(words)
-                .text(" ")
-                .node("span", "quiet", "HR 3480, section 11")
+                Level::Service | Level::Manufacturer => "",
+            });
         }
-        None => html.node(
-            "span",
-            "quiet",
+        Some(LoggedIn::Unknown(code)) => {
+            html.text(&format!("code {code}, which no level has"));
+        }
+        Some(LoggedIn::Unread) => quiet(html, "not read"),
+        Some(LoggedIn::NoLevels) | None => quiet(
+            html,
             "this model has no user levels (section 11: ICON3000v2 only)",
         ),
-    };
+    }
+    quiet(html, " HR 3480, section 11");
     html.close("p");
 }
 
 /// The settings in their groups.
 pub fn settings(html: &mut Markup, dossier: &Dossier, filter: &Filter, around: &Around) {
-    let rows: Vec<_> = writable(dossier)
-        .into_iter()
-        .filter(|row| filter.passes(dossier, row))
-        .collect();
-    if rows.is_empty() {
+    let mut around = around.clone();
+    let mut nothing = true;
+    for group in groups(dossier) {
+        let settings: Vec<_> = group.settings.iter().filter(|s| filter.passes(s)).collect();
+        if settings.is_empty() {
+            continue;
+        }
+        nothing = false;
+        let differ = settings.iter().filter(|s| s.differs);
+        around.differ = differ
+            .filter_map(|s| Some((s.row.key, s.mirror_of?)))
+            .collect();
+        let n = u64::try_from(settings.len()).unwrap_or(0);
+        heading(html, group.name, &count(n, "setting"));
+        let rows: Vec<_> = settings.iter().map(|s| s.row).collect();
+        list(html, dossier, &rows, &around);
+    }
+    if nothing {
         html.open("p", &[("class", "empty"), ("data-testid", "icon-nothing")]);
         html.text(if dossier.device.map().is_none() {
             "The kind of this device is not known yet."
@@ -150,11 +142,6 @@ pub fn settings(html: &mut Markup, dossier: &Dossier, filter: &Filter, around: &
             "No setting passes these filters. Clear the text, or choose another group."
         })
         .close("p");
-    }
-    for (name, rows) in groups(&rows) {
-        let n = u64::try_from(rows.len()).unwrap_or(0);
-        heading(html, name, &count(n, "setting"));
-        list(html, dossier, &rows, around);
     }
 }
 
@@ -197,6 +184,11 @@ mod tests {
             ..Filter::default()
         };
         assert_eq!(drawn(&dossier, &marked).matches("icon-line").count(), 1);
+        // HR 2 should show HR 3017 once more (reading E44).
+        let dossier = device(&[(2, &[20]), (3017, &[10])]);
+        let html = drawn(&dossier, &marked);
+        assert!(html.contains("HR 3017 says something else"), "{html}");
+        assert_eq!(html.matches("icon-line").count(), 1);
         let none = Filter {
             text: "nonsense".into(),
             ..Filter::default()
@@ -212,7 +204,10 @@ mod tests {
             html.finish()
         };
         let html = say(&device(&[(3480, &[1])]));
-        assert!(html.contains(">User (1)</b>"), "{html}");
+        assert!(
+            html.contains(">User</b>") && html.contains("after power-up"),
+            "{html}"
+        );
         assert!(say(&device(&[])).contains("not read"));
         let old = Dossier::new("XV", shared::device::Device::Icon3000);
         assert!(say(&old).contains("no user levels"));

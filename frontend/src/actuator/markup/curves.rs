@@ -1,12 +1,12 @@
 //! Curves: what there is, what is shown, and the numbers behind them.
 
-use shared::address::{Address, Table};
 use shared::few;
 
 use super::super::state::curves::{Preset, Trace};
 use super::super::state::dossier::Dossier;
 use super::super::state::strokes::{Kind, Limits, Stroke};
 use super::super::state::trends::RECORDERS;
+use super::super::state::wanted::stored;
 use super::reading;
 use crate::format::count;
 use crate::markup::Markup;
@@ -42,19 +42,7 @@ pub fn choose(html: &mut Markup, open: &str, address: impl Fn(&str) -> String) {
     }
 }
 
-/// How many curves the device has stored, by HR 3511 to 3514: opening, closing, PST, EFS.
-#[must_use]
-pub fn stored(dossier: &Dossier) -> [Option<u16>; 4] {
-    let most = [100, 100, 16, 16];
-    let mut at = 3511..;
-    most.map(|most: u16| {
-        let address = Address::new(at.next().unwrap_or(3511));
-        let cell = dossier.image.cell(Table::Holding, address)?;
-        Some(cell.word.min(most))
-    })
-}
-
-/// The same in words.
+/// How many curves the device has stored.
 pub fn stored_line(html: &mut Markup, dossier: &Dossier) {
     let stored = stored(dossier);
     if stored.iter().all(Option::is_none) {
@@ -162,15 +150,14 @@ pub fn numbers(html: &mut Markup, traces: &[&Trace]) {
         .text("Stroke")
         .close("th");
     for trace in traces {
-        html.open(
-            "th",
-            &[("scope", "col"), ("title", &trace.curve.source.to_string())],
-        );
+        html.open("th", &[("scope", "col")]);
         html.text(&trace.label).close("th");
     }
     html.close("tr").close("thead").open("tbody", &[]);
     row(html, "Made, device clock", traces, |t| (t.when(), ""));
-    row(html, "From", traces, |t| (t.place.clone(), ""));
+    row(html, "From", traces, |t| {
+        (format!("{}, {}", t.place, t.curve.source), "")
+    });
     for name in [
         "Stroke time",
         "Voltage",
@@ -260,13 +247,7 @@ pub fn stroke(html: &mut Markup, stroke: &Stroke, limits: &Limits) {
             &[("data-testid", "stroke-item"), ("data-key", item.field.key)],
         );
         html.node("dt", "", &item.label());
-        let title = format!(
-            "record {} · raw {} · {}",
-            item.record,
-            item.raw(),
-            item.field.source
-        );
-        html.open("dd", &[("title", &title)]);
+        html.open("dd", &[]);
         html.node("b", "", &item.text());
         if item.number().is_some() && !item.field.unit.is_empty() {
             html.text(" ").node("i", "unit", item.field.unit);
@@ -285,6 +266,18 @@ pub fn stroke(html: &mut Markup, stroke: &Stroke, limits: &Limits) {
         html.close("dd").close("div");
     }
     html.close("dl");
+    html.open("details", &[("class", "raw")]);
+    html.open("summary", &[])
+        .text("Records and raw words")
+        .close("summary");
+    html.open("ul", &[("class", "icon-traces")]);
+    for item in &stroke.items {
+        html.open("li", &[("data-testid", "stroke-raw")]);
+        html.text(&format!("{}: record {}, ", item.label(), item.record));
+        html.node("code", "", &item.raw());
+        html.text(&format!(" · {}", item.field.source)).close("li");
+    }
+    html.close("ul").close("details");
     if stroke.kind == Kind::Pst && limits.words.is_empty() {
         html.node(
             "p",

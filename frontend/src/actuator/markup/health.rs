@@ -4,8 +4,9 @@ use shared::icon3000::health::{Finding, Health, health as judge};
 use shared::icon3000::model::{Meaning, Ne107};
 
 use super::heading;
+use super::tools::read_at;
 use crate::actuator::state::dossier::Dossier;
-use crate::actuator::state::health::{Past, past};
+use crate::actuator::state::health::{Past, past, rows};
 use crate::actuator::state::saved::model;
 use crate::chart::time::stamp;
 use crate::dop::markup::sign_of;
@@ -17,12 +18,13 @@ use crate::markup::device::sign;
 const PAST: usize = 8;
 
 /// The health of a device. `logs` is the address of its logs.
-pub fn health(html: &mut Markup, dossier: &Dossier, logs: &str) {
+pub fn health(html: &mut Markup, dossier: &Dossier, logs: &str, now: i64) {
     let Some(model) = model(dossier.device) else {
         return;
     };
     let health = judge(model, &dossier.image);
     summary(html, &health);
+    read_at(html, dossier, &rows(dossier), now);
     let mut last = None;
     for condition in &health.findings {
         let status = condition.meaning.status;
@@ -75,6 +77,11 @@ fn summary(html: &mut Markup, health: &Health) {
             .collect();
         html.text(&format!("Not read, so not known: {}.", names.join(", ")));
         html.close("p");
+    }
+    if !health.untold.is_empty() {
+        let names: Vec<_> = health.untold.iter().map(|m| m.label).collect();
+        let words = format!("This model does not tell: {}.", names.join(", "));
+        html.node("p", "quiet", &words);
     }
 }
 
@@ -148,7 +155,7 @@ mod tests {
 
     fn drawn(dossier: &Dossier) -> String {
         let mut html = Markup::new();
-        health(&mut html, dossier, "#/x");
+        health(&mut html, dossier, "#/x", 60);
         html.finish()
     }
 
@@ -167,6 +174,7 @@ mod tests {
             "HR 3010, bit",
             "health-past",
             "Not read, so not known",
+            "Read just now",
         ] {
             assert!(html.contains(part), "{part}: {html}");
         }

@@ -1,33 +1,62 @@
 //! Who the device is: what function 17, the registers and the cards say, and whether they agree.
 
-use shared::icon3000::identity::{Fact, REPORT, Report, detect, facts};
+use shared::address::{Address, Table};
+use shared::icon3000::identity::{Fact, PROBES, REPORT, Report, detect, facts};
 use shared::icon3000::model::READINGS;
-use shared::proto::Outcome;
+use shared::icon3000::say;
+use shared::map::row::Row;
 use shared::render::Spaced;
+use shared::value::Value;
 
+use super::tools::{read_at, when};
 use super::{heading, reading};
 use crate::actuator::state::dossier::{Dossier, Subject};
 use crate::actuator::state::saved::model;
+use crate::actuator::state::wanted::within;
 use crate::markup::Markup;
 
+/// Holding registers that say who the device is: numbers, tags, versions, types, dates, and those
+/// that say it once more.
+const WHO: [(u16, u16); 7] = [
+    (19, 2),
+    (3000, 1),
+    (3034, 54),
+    (3460, 14),
+    (3654, 2),
+    (3742, 47),
+    (3909, 2),
+];
+
+/// True for a row that says who the device is; in the input registers those that an ICON2000v4 has
+/// nowhere else.
+#[must_use]
+pub fn is_told(row: &Row) -> bool {
+    match row.table {
+        Table::Input => row.group == "Identity",
+        _ => within(row, &WHO),
+    }
+}
+
 /// Everything about who the device is.
-pub fn identity(html: &mut Markup, dossier: &Dossier) {
+pub fn identity(html: &mut Markup, dossier: &Dossier, now: i64) {
     let pdu = dossier.identity.as_ref().map(|a| a.pdu.as_slice());
     let report = pdu.and_then(Report::of_pdu);
     which(html, dossier, report.as_ref());
     let Some(model) = model(dossier.device) else {
         return;
     };
-    let all = facts(model, &dossier.image, report.as_ref(), &dossier.all_files());
+    let mut all = facts(model, &dossier.image, report.as_ref(), &dossier.all_files());
+    more(dossier, &mut all);
     let (cards, told): (Vec<_>, Vec<_>) = all.iter().partition(|f| f.from.starts_with("file"));
     heading(html, "What it says of itself", "");
     if told.is_empty() {
         html.open("p", &[("class", "empty"), ("data-testid", "icon-nothing")]);
         html.text("Nothing was read yet.").close("p");
     } else {
+        read_at(html, dossier, &dossier.rows(&is_told), now);
         table(html, &told);
     }
-    server_id(html, dossier, report.as_ref());
+    server_id(html, dossier, report.as_ref(), now);
     heading(html, "Card reports", "files 5300 to 5304, table 49");
     if cards.is_empty() {
         html.node("p", "quiet", "None was read.");
@@ -45,13 +74,78 @@ pub fn identity(html: &mut Markup, dossier: &Dossier) {
     card(html, name, &of_card);
 }
 
+/// Adds what else the registers tell: versions and types, and the nominal torque once more.
+fn more(dossier: &Dossier, facts: &mut Vec<Fact>) {
+    let image = &dossier.image;
+    let unit = dossier.row("torque_thrust_engineering_unit");
+    let value = dossier.row("torque_thrust_value");
+    if let (Some(unit), Some(value)) = (unit, value)
+        && let (Some(seen), Some(amount)) = (image.row(unit), say::row(image, value))
+        && let Value::Code { raw, set } = seen.judged.value
+    {
+        let unit_name = set.get(raw).map_or("(unit unknown)", |m| m.label);
+        let value = format!("{} {unit_name}", amount.trim());
+        let same = |f: &&mut Fact| f.key == TORQUE.0;
+        let differ = facts.iter_mut().filter(same).any(|f| f.value != value);
+        facts
+            .iter_mut()
+            .filter(same)
+            .for_each(|f| f.disputed |= differ);
+        let at = facts.iter().rposition(|f| f.key == TORQUE.0);
+        facts.insert(
+            at.map_or(0, |at| at + 1),
+            Fact {
+                key: TORQUE.0,
+                label: TORQUE.1,
+                value,
+                from: "HR 3784 to 3788 (E04)".to_owned(),
+                source: unit.source,
+                disputed: differ,
+            },
+        );
+    }
+    let last = facts.iter().rposition(|f| !f.from.starts_with("file"));
+    let mut at = last.map_or(0, |at| at + 1);
+    for row in dossier.rows(&is_told) {
+        let from = format!("{} {}", row.table.short(), row.address);
+        let who = row.group == "Identity" || row.key.contains("revision");
+        let known = row.key.starts_with("torque_thrust") || facts.iter().any(|f| f.from == from);
+        // Dates of maintenance are settings, but for the start-up.
+        if known || !(who || row.key.ends_with("start_up_date")) {
+            continue;
+        }
+        if let Some(value) = say::row(image, row) {
+            let fact = Fact {
+                key: row.key,
+                label: row.label,
+                value,
+                from,
+                source: row.source,
+                disputed: false,
+            };
+            facts.insert(at, fact);
+            at += 1;
+        }
+    }
+}
+
+/// Key and label of the nominal torque.
+const TORQUE: (&str, &str) = ("nominal_torque", "Nominal torque or thrust");
+
 /// Which model it is, and why.
 fn which(html: &mut Markup, dossier: &Dossier, report: Option<&Report>) {
+    // A register that answers is known; one that is not there is refused with exception 02.
     let refused = |start: u16| {
-        let failure = dossier.failed.get(&Subject::Block(3, start))?;
-        Some(failure.outcome == Outcome::Exception)
+        let known = dossier.image.cell(Table::Holding, Address::new(start));
+        let failure = dossier.failed.get(&Subject::Block(3, start));
+        match (known, failure) {
+            (Some(_), _) => Some(false),
+            (_, Some(failure)) if failure.code == 2 => Some(true),
+            _ => None,
+        }
     };
-    let guess = detect(&dossier.image, report, refused(3480), refused(3000));
+    let [beyond_3473, beyond_21] = PROBES.map(refused);
+    let guess = detect(&dossier.image, report, beyond_3473, beyond_21);
     html.open("p", &[("class", "icon-lead"), ("data-testid", "model")]);
     match guess.model {
         Some(model) => {
@@ -120,12 +214,13 @@ fn table(html: &mut Markup, facts: &[&Fact]) {
 }
 
 /// The answer to function 17 as it came.
-fn server_id(html: &mut Markup, dossier: &Dossier, report: Option<&Report>) {
+fn server_id(html: &mut Markup, dossier: &Dossier, report: Option<&Report>, now: i64) {
     heading(html, "Report of server ID", "FC 17, section 8.10");
     let Some(answer) = &dossier.identity else {
         html.node("p", "quiet", "It was not read.");
         return;
     };
+    when(html, dossier, Some(answer.at), now);
     html.open("p", &[("data-testid", "report")]);
     match report {
         Some(report) => {
@@ -175,7 +270,7 @@ fn card(html: &mut Markup, name: &str, facts: &[&Fact]) {
     for fact in facts {
         html.open("div", &[("data-key", fact.key)]);
         html.node("dt", "", fact.label);
-        html.open("dd", &[("title", &fact.source.to_string())]);
+        html.open("dd", &[]);
         html.node("b", "", &fact.value).close("dd").close("div");
     }
     html.close("dl").close("section");
@@ -189,7 +284,7 @@ mod tests {
 
     fn drawn(dossier: &Dossier) -> String {
         let mut html = Markup::new();
-        identity(&mut html, dossier);
+        identity(&mut html, dossier, 0);
         html.finish()
     }
 
@@ -237,6 +332,83 @@ mod tests {
             2,
             "{html}"
         );
+    }
+
+    /// Readings E35 and E84: HR 22 came with the ICON3000, HR 3480 with the v2. Only exception 02 says that a
+    /// register is not there; silence says nothing.
+    #[test]
+    fn what_is_refused_tells_the_model() {
+        use shared::proto::{Block, IconStep, Outcome, TableName};
+        let fail = |dossier: &mut Dossier, start, outcome, code| {
+            let table = TableName::Holding;
+            let step = IconStep::Block(Block {
+                table,
+                start,
+                count: 1,
+            });
+            dossier.fail(step, outcome, code, "", 1);
+        };
+        let not_known = "Which model it is, is not known";
+        let mut dossier = Dossier::new("x", shared::device::Device::Icon2000v4);
+        for start in PROBES {
+            fail(&mut dossier, start, Outcome::Silence, 0);
+        }
+        assert!(drawn(&dossier).contains(not_known));
+        fail(&mut dossier, 3480, Outcome::Exception, 2);
+        fail(&mut dossier, 22, Outcome::Exception, 2);
+        assert!(drawn(&dossier).contains("It is an <b class=\"\">ICON2000v4</b>"));
+        let mut dossier = device(&[(22, &[0])]);
+        fail(&mut dossier, 3480, Outcome::Exception, 2);
+        assert!(drawn(&dossier).contains("It is an <b class=\"\">ICON3000</b>"));
+        let html = drawn(&device(&[(3480, &[1])]));
+        assert!(
+            html.contains("It is an <b class=\"\">ICON3000v2</b>"),
+            "{html}"
+        );
+    }
+
+    /// HR 3074 says 500 Nm; HR 3784 (reading E04: 1 is Nm) and 3785 say 400 Nm. HR 3772 is hardware
+    /// revision 12 of the logic card.
+    #[test]
+    fn nominal_torque_and_versions_are_told() {
+        let html = drawn(&device(&[
+            (3074, &[0x0135, 0x3030, 0x2020, 0x2020]),
+            (3784, &[1, 0x3430, 0x3020, 0x2020, 0x2020]),
+            (3772, &[12]),
+        ]));
+        for part in [
+            "500 Nm",
+            "400 Nm",
+            "HR 3784 to 3788 (E04)",
+            "Logic Card HW Revision",
+            "HR 3772",
+        ] {
+            assert!(html.contains(part), "{part}: {html}");
+        }
+        assert_eq!(
+            html.matches("says otherwise elsewhere").count(),
+            2,
+            "{html}"
+        );
+        let html = drawn(&device(&[
+            (3074, &[0x0134, 0x3030, 0x2020, 0x2020]),
+            (3784, &[1, 0x3430, 0x3020, 0x2020, 0x2020]),
+        ]));
+        assert!(!html.contains("says otherwise elsewhere"), "{html}");
+    }
+
+    /// An ICON2000v4 tells its test date in IR 14 and its start-up date in HR 19 (tables 3 and 4).
+    #[test]
+    fn an_older_model_tells_who_it_is() {
+        let mut dossier = Dossier::new("x", shared::device::Device::Icon2000v4);
+        let date = [4, 4, 0x15, 0x03, 0x20, 0x19];
+        assert!(dossier.absorb(&[4, 0, 14, 0, 2], &date, 1));
+        let date = [3, 4, 0x16, 0x04, 0x20, 0x20];
+        assert!(dossier.absorb(&[3, 0, 19, 0, 2], &date, 1));
+        let html = drawn(&dossier);
+        for part in ["2019-03-15", "IR 14", "2020-04-16", "HR 19"] {
+            assert!(html.contains(part), "{part}: {html}");
+        }
     }
 
     #[test]

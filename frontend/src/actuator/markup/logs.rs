@@ -11,12 +11,12 @@ use crate::dop::markup::sign_of;
 use crate::dop::when::{ago, span};
 use crate::format::count;
 use crate::markup::Markup;
-use crate::markup::control::{Button, Choice};
+use crate::markup::control::{Button, Choice, search, tick};
 use crate::markup::device::sign;
 
 /// Which log is open. `address` makes the address of a log.
-pub fn choose(html: &mut Markup, open: u16, address: impl Fn(&str) -> String) {
-    for file in LOGS {
+pub fn choose(html: &mut Markup, logs: &[u16], open: u16, address: impl Fn(&str) -> String) {
+    for &file in logs {
         let name = match file {
             2 => "Alarms",
             3 => "Warnings",
@@ -35,27 +35,33 @@ pub fn choose(html: &mut Markup, open: u16, address: impl Fn(&str) -> String) {
             ],
         );
         html.text(name);
-        if file != 5 {
+        if file != 5 && !is_old(logs) {
             html.text(" ").node("code", "quiet", &id);
         }
         html.close("a");
     }
+    if is_old(logs) {
+        html.node(
+            "span",
+            "quiet",
+            "The five latest of each, from registers: longer logs, connections, events and file 5 came with the ICON3000v2.",
+        );
+    }
+}
+
+/// True for the logs of a model that has no files.
+const fn is_old(logs: &[u16]) -> bool {
+    logs.len() < LOGS.len()
 }
 
 /// What is looked for, and the files.
 pub fn filters(html: &mut Markup, table: &Table, filter: &Filter) {
-    html.open(
-        "input",
-        &[
-            ("type", "search"),
-            ("data-act", "text"),
-            ("data-testid", "log-filter"),
-            ("data-value", &filter.text),
-            ("value", &filter.text),
-            ("placeholder", "Text, number or time"),
-            ("aria-label", "Text, number or time of an entry"),
-            ("data-find", ""),
-        ],
+    search(
+        html,
+        "text",
+        "log-filter",
+        "Text, number or time",
+        &filter.text,
     );
     if let Some((_, field)) = table.codes() {
         let members = field.set.map_or(&[][..], |s| s.members);
@@ -73,6 +79,9 @@ pub fn filters(html: &mut Markup, table: &Table, filter: &Filter) {
             ..Choice::default()
         }
         .draw(html, codes.iter().map(|(c, w)| (c.as_str(), *w)));
+    }
+    if table.has_times() {
+        tick(html, "raw", "log-raw", "Raw words", filter.raw);
     }
     for (act, words) in [("csv", "CSV"), ("json", "JSON")] {
         Button {
@@ -110,7 +119,7 @@ pub fn status(html: &mut Markup, dossier: &Dossier, table: &Table, shown: usize)
     html.text(" · ").node(
         "span",
         "quiet",
-        &format!("file {}, {}", table.file, table.source),
+        &format!("{}, {}", table.place, table.source),
     );
     html.close("p");
     if table.has_times() {
@@ -135,7 +144,7 @@ pub fn clock(offset: Option<i64>) -> String {
     let lead = "Times are those of the clock in the actuator, whose time zone it does not tell; ";
     let by = |seconds: i64| span(seconds.unsigned_abs());
     let words = match offset {
-        None => "how far it is from ours is not known: HR 3023 to 3026 were not read.".to_owned(),
+        None => "how far it is from ours is not known: its date and time were not read.".to_owned(),
         Some(-2..=2) => "it goes with UTC to 2 seconds.".to_owned(),
         Some(ahead @ 1..) => format!("it is {} ahead of UTC.", by(ahead)),
         Some(behind) => format!("it is {} behind UTC.", by(behind)),
@@ -189,7 +198,7 @@ fn class(table: &Table) -> String {
 }
 
 /// One entry.
-pub fn row(html: &mut Markup, table: &Table, row: &Row, offset: Option<i64>, now: i64) {
+pub fn row(html: &mut Markup, table: &Table, row: &Row, raw: bool, offset: Option<i64>, now: i64) {
     html.open(
         "div",
         &[
@@ -218,22 +227,20 @@ pub fn row(html: &mut Markup, table: &Table, row: &Row, offset: Option<i64>, now
         html.open("span", &[("class", "log-cell")]);
         match cell {
             Some(cell) => {
-                let field = table.columns.get(at);
-                let set = field.and_then(|f| f.set).map_or("", |s| s.name);
+                let set = table.columns.get(at).and_then(|f| f.set);
+                let set = set.map_or("", |s| s.name);
                 if let Some(meaning) = cell.number.and_then(|code| meaning(set, code)) {
                     sign(html, sign_of(meaning.status), "18");
                     html.text(" ");
                 }
-                let title = match field {
-                    Some(f) => format!("{} · raw {} · {}", f.label, cell.raw, f.source),
-                    None => format!("raw {}", cell.raw),
-                };
-                html.open("span", &[("title", &title)]);
-                html.text(&cell.text);
-                if !cell.unit.is_empty() {
+                if raw {
+                    html.node("code", "", &cell.raw);
+                } else {
+                    html.text(&cell.text);
+                }
+                if !raw && !cell.unit.is_empty() {
                     html.text(" ").node("i", "unit", cell.unit);
                 }
-                html.close("span");
                 if cell.quality != Quality::Good && table.has_times() {
                     html.text(" ").node("em", "quality", cell.quality.label());
                 }
@@ -257,7 +264,7 @@ fn meaning(set: &str, code: i64) -> Option<&'static Meaning> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::actuator::state::logs::Y2K;
+    use crate::actuator::state::logs::{Y2K, logs_of};
     use shared::device::Device;
 
     /// An alarm that code 12 names, a minute before second 100 000 of 2000.
@@ -279,16 +286,23 @@ mod tests {
     fn an_entry_has_sign_time_and_raw() {
         let table = Table::of(&device(), 2);
         let now = Y2K + 100_000 + 3 * 3600;
-        let html = drawn(|html| row(html, &table, &table.rows[0], Some(0), now));
-        for part in [
-            "2000-01-02 03:46:40",
-            "3 hours ago",
-            "Lost",
-            "sign-f",
-            "raw 000C",
-        ] {
-            assert!(html.contains(part), "{part}: {html}");
+        let said = |raw| drawn(|html| row(html, &table, &table.rows[0], raw, Some(0), now));
+        for part in ["2000-01-02 03:46:40", "3 hours ago", "Lost", "sign-f"] {
+            assert!(said(false).contains(part), "{part}: {}", said(false));
         }
+        assert!(said(true).contains(">000C<") && !said(true).contains("Lost"));
+    }
+
+    #[test]
+    fn an_older_model_says_what_it_has_not() {
+        let open =
+            |dossier: &Dossier| drawn(|html| choose(html, logs_of(dossier), 2, str::to_owned));
+        let html = open(&Dossier::new("x", Device::Icon3000));
+        assert_eq!(html.matches("icon-log-").count(), 2, "{html}");
+        assert!(html.contains("came with the ICON3000v2"));
+        let html = open(&device());
+        assert_eq!(html.matches("icon-log-").count(), 5, "{html}");
+        assert!(!html.contains("came with"));
     }
 
     #[test]

@@ -16,17 +16,19 @@ use shared::map::row::{Reading, Settled};
 
 use crate::markup::Markup;
 
-/// The number of a reading, with its reason for those who ask.
+/// The number of a reading, with its reason for those who open it.
 pub fn reading(html: &mut Markup, reading: &Reading) {
     let settled = match reading.settled {
         Settled::Yes => "settled by the text",
         Settled::Likely => "likely",
         Settled::No => "open, the raw value decides",
     };
-    let title = format!("Reading {}: {} ({settled})", reading.id, reading.text);
-    html.open("em", &[("class", "trust"), ("title", &title)])
+    html.open("details", &[("class", "reading")]);
+    html.open("summary", &[("class", "trust")])
         .text(reading.id)
-        .close("em");
+        .close("summary");
+    html.text(&format!("{} ({settled}) ", reading.text))
+        .close("details");
 }
 
 /// A heading with a remark beside it.

@@ -1,10 +1,11 @@
 //! Registers as lines: name, value with unit and quality, and on demand everything about them.
 
+use shared::address::Address;
+use shared::icon3000::config::range;
 use shared::icon3000::say::bytes_of;
 use shared::map::row::{Access, DeviceMap, Kind, Level, Row, Trust};
 use shared::value::{Quality, Value};
 
-use super::reading;
 use crate::actuator::state::dossier::Dossier;
 use crate::components::icon::Glyph;
 use crate::format::age;
@@ -64,6 +65,9 @@ pub struct Around {
     pub now: u64,
     /// True for the columns of what can be set: range and user level.
     pub settings: bool,
+    /// Lines whose register says something else than the one that it shows once more, and which
+    /// that is.
+    pub differ: Vec<(&'static str, Address)>,
 }
 
 /// A list of registers.
@@ -116,6 +120,9 @@ fn line(html: &mut Markup, dossier: &Dossier, row: &'static Row, around: &Around
     html.close("span");
     html.open("span", &[("class", "icon-quality")]);
     marks(html, row, cell.as_ref());
+    if let Some((_, home)) = around.differ.iter().find(|(key, _)| *key == row.key) {
+        html.node("em", "quality", &format!("HR {home} says something else"));
+    }
     html.close("span");
     if around.settings {
         html.node("span", "icon-range quiet", &range(row));
@@ -157,24 +164,11 @@ fn marks(html: &mut Markup, row: &Row, cell: Option<&Cell>) {
         html.node("em", "quality", cell.quality.label()).text(" ");
     }
     if let Some(read) = row.reading {
-        reading(html, read);
+        // The open line has its words.
+        html.node("em", "trust", read.id).text(" ");
     } else if row.trust == Trust::Inferred {
         html.node("em", "trust", row.trust.key());
     }
-}
-
-/// Smallest and largest value in engineering units. Reading E87: ranges are raw counts.
-#[must_use]
-pub fn range(row: &Row) -> String {
-    let Some((min, max)) = row.range else {
-        return String::new();
-    };
-    let scaled = |raw: i32| match row.kind {
-        Kind::Enum => raw.to_string(),
-        _ => row.scale.apply(raw.into()).to_string(),
-    };
-    let text = format!("{} to {} {}", scaled(min), scaled(max), row.unit);
-    text.trim_end().to_owned()
 }
 
 /// A user level in words.
@@ -259,7 +253,7 @@ fn bits(html: &mut Markup, row: &'static Row, cell: Option<&Cell>) {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use shared::address::{Address, Table};
+    use shared::address::Table;
     use shared::device::Device;
 
     /// A device whose holding registers say this from an address on.
@@ -293,6 +287,7 @@ pub(crate) mod tests {
             opened: if open { vec![row.key] } else { Vec::new() },
             now: 5_000_000,
             settings: true,
+            differ: Vec::new(),
         };
         let mut html = Markup::new();
         list(&mut html, dossier, &[row], &around);

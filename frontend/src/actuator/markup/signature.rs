@@ -88,7 +88,7 @@ fn row(html: &mut Markup, dossier: &Dossier, trace: &Trace, reference: Option<&T
         "tr",
         &[("data-testid", "signature"), ("data-trace", &trace.key)],
     );
-    html.open("th", &[("scope", "row"), ("title", &trace.place)]);
+    html.open("th", &[("scope", "row")]);
     html.text(&trace.label).text(" ");
     html.node("span", "quiet", &trace.place).close("th");
     let Signature {

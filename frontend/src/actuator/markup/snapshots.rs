@@ -3,12 +3,20 @@
 use shared::icon3000::snapshot::{Change, Diff, Sort};
 
 use crate::actuator::state::dossier::Dossier;
+use crate::actuator::state::saved::{gaps, oldest};
 use crate::chart::time::stamp;
 use crate::components::icon::Glyph;
 use crate::dop::when::ago;
 use crate::format::count;
 use crate::markup::Markup;
 use crate::markup::control::{Button, Choice, tick};
+
+/// How keys of devices on the line begin.
+pub const LIVE: &str = "live:";
+
+fn is_live(key: &str) -> bool {
+    key.starts_with(LIVE)
+}
 
 /// One device that can be looked at or compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,8 +27,10 @@ pub struct Entry {
     pub label: String,
     /// Where it is looked at.
     pub href: String,
-    /// Seconds since 1970 of what it says.
+    /// Seconds since 1970 of the oldest of what it says.
     pub taken: i64,
+    /// What is missing of it, empty if nothing is.
+    pub gaps: String,
     /// What is wrong with its file.
     pub problems: Vec<String>,
     /// Kind and unit address.
@@ -35,11 +45,13 @@ pub fn entry(dossier: &Dossier, key: &str, href: String, problems: &[String]) ->
     } else {
         format!("{} · {}", dossier.tag, dossier.origin)
     };
+    let live = dossier.origin.is_empty();
     Entry {
         key: key.to_owned(),
         label,
         href,
-        taken: dossier.wall(0),
+        taken: oldest(dossier).unwrap_or_else(|| dossier.wall(0)),
+        gaps: if live { gaps(dossier) } else { String::new() },
         problems: problems.to_vec(),
         model: format!("{} · unit {}", dossier.device.label(), dossier.unit),
     }
@@ -67,7 +79,7 @@ pub fn list(html: &mut Markup, entries: &[Entry], now: i64) {
     }
     html.open("ul", &[("class", "icon-snapshots")]);
     for entry in entries {
-        let live = entry.key.starts_with("live:");
+        let live = is_live(&entry.key);
         html.open(
             "li",
             &[("data-testid", "snapshot"), ("data-key", &entry.key)],
@@ -76,13 +88,17 @@ pub fn list(html: &mut Markup, entries: &[Entry], now: i64) {
         html.icon(if live { Glyph::Devices } else { Glyph::File });
         html.text(" ").node("b", "", &entry.label).close("a");
         html.open("span", &[("class", "quiet")]);
-        html.text(&entry.model);
-        if !live {
-            html.text(&format!(
-                " · {} UTC, {}",
-                stamp(entry.taken),
-                ago(entry.taken, now)
-            ));
+        html.text(&format!(
+            "{} · {}{} UTC, {}",
+            entry.model,
+            if live { "a copy, read from " } else { "" },
+            stamp(entry.taken),
+            ago(entry.taken, now)
+        ));
+        if live && entry.gaps.is_empty() {
+            html.text(" on, whole");
+        } else if live {
+            html.text(" on; ").node("em", "quality", &entry.gaps);
         }
         html.close("span");
         if !live {
@@ -114,7 +130,14 @@ pub fn list(html: &mut Markup, entries: &[Entry], now: i64) {
 }
 
 /// Which two are compared, and whether counters are shown.
-pub fn choices(html: &mut Markup, entries: &[Entry], first: &str, second: &str, passing: bool) {
+/// `idle` is true if the device on the line could be read now.
+pub fn choices(
+    html: &mut Markup,
+    entries: &[Entry],
+    (first, second): (&str, &str),
+    passing: bool,
+    idle: bool,
+) {
     if entries.len() < 2 {
         html.node(
             "p",
@@ -151,6 +174,19 @@ pub fn choices(html: &mut Markup, entries: &[Entry], first: &str, second: &str, 
         ..Button::default()
     }
     .draw(html);
+    if let Some(live) = [second, first].into_iter().find(|key| is_live(key)) {
+        html.open("span", &[("data-key", live)]);
+        Button {
+            act: "fresh",
+            testid: "compare-fresh",
+            words: "Read it now and compare",
+            glyph: Some(Glyph::Poll),
+            disabled: !idle,
+            ..Button::default()
+        }
+        .draw(html);
+        html.close("span");
+    }
     let words = "Counters, clock and measurements too";
     tick(html, "passing", "compare-passing", words, passing);
 }
@@ -358,7 +394,16 @@ mod tests {
             assert!(html.contains(part), "{part}: {html}");
         }
         assert_eq!(html.matches("snapshot-close").count(), 1);
-        let html = drawn(|html| choices(html, &both[..1], "", "", false));
-        assert!(html.contains("Two are needed"));
+        assert!(
+            html.contains("a copy, read from 2025-12-06 05:46:40 UTC"),
+            "{html}"
+        );
+        assert!(html.contains("parts not read, 1 part refused"), "{html}");
+        let choose =
+            |entries: &[Entry], pair| drawn(|html| choices(html, entries, pair, false, true));
+        assert!(choose(&both[..1], ("", "")).contains("Two are needed"));
+        assert!(!choose(&both, ("0", "")).contains("compare-fresh"));
+        let html = choose(&both, ("0", "live:XV-101"));
+        assert!(html.contains("data-key=\"live:XV-101\"><button"), "{html}");
     }
 }

@@ -1,6 +1,9 @@
 //! What is read, how far it is, what failed.
 
+use shared::map::row::Row;
+
 use crate::actuator::state::dossier::{Dossier, Failure, Subject};
+use crate::actuator::state::saved::gaps;
 use crate::actuator::store::Site;
 use crate::chart::time::stamp;
 use crate::components::icon::Glyph;
@@ -12,38 +15,58 @@ use crate::state::health::outcome;
 /// The buttons of a screen that reads the device: what it reads, and how far that is. `what` are
 /// pairs of an act and its words.
 pub fn reads(html: &mut Markup, site: &Site, online: bool, now_us: u64, what: &[(&str, &str)]) {
-    let idle = online && site.job.is_none();
+    let idle = online && site.shown_job().is_none();
     for (act, words) in what {
-        Button {
-            act,
-            testid: if *act == "read" { "icon-read" } else { act },
-            words,
-            glyph: Some(Glyph::Poll),
-            disabled: !idle,
-            ..Button::default()
-        }
-        .draw(html);
+        let testid = if *act == "read" { "icon-read" } else { act };
+        button(html, (act, testid, words), Glyph::Poll, false, !idle);
     }
+    progress(html, site, online, now_us);
+    html.node("span", "toolbar-gap", "");
+    let whole = ("whole", "icon-whole", "Read whole device");
+    let save = ("save", "icon-save", "Save snapshot");
+    let nothing = site.dossier.is_empty() || site.shown_job().is_some();
+    if site.saving && !nothing {
+        html.open("span", &[("class", "notice"), ("data-testid", "icon-gaps")]);
+        html.text(&format!("Not whole: {}.", gaps(&site.dossier)));
+        html.close("span");
+        button(html, whole, Glyph::Poll, false, !idle);
+        let as_it_is = ("save", "icon-save-gaps", "Save with gaps");
+        button(html, as_it_is, Glyph::Save, false, false);
+    } else {
+        button(html, whole, Glyph::Poll, false, !idle);
+        button(html, save, Glyph::Save, false, nothing);
+    }
+}
+
+/// A button: what it does, its `data-testid` and its words.
+fn button(
+    html: &mut Markup,
+    (act, testid, words): (&str, &str, &str),
+    glyph: Glyph,
+    hidden: bool,
+    disabled: bool,
+) {
     Button {
-        act: "cancel",
-        testid: "icon-cancel",
-        words: "Cancel",
-        glyph: Some(Glyph::Close),
-        hidden: site.job.is_none(),
-        disabled: site.job.as_ref().is_some_and(|j| j.cancelled),
+        act,
+        testid,
+        words,
+        glyph: Some(glyph),
+        hidden,
+        disabled,
         ..Button::default()
     }
     .draw(html);
-    Button {
-        act: "resume",
-        testid: "icon-resume",
-        words: "Go on",
-        glyph: Some(Glyph::Play),
-        hidden: site.broken.is_none() || site.job.is_some(),
-        disabled: !idle,
-        ..Button::default()
-    }
-    .draw(html);
+}
+
+/// How far a read is, a button to end it and one to go on with it.
+pub fn progress(html: &mut Markup, site: &Site, online: bool, now_us: u64) {
+    let job = site.shown_job();
+    let cancelled = job.is_some_and(|j| j.cancelled);
+    let cancel = ("cancel", "icon-cancel", "Cancel");
+    button(html, cancel, Glyph::Close, job.is_none(), cancelled);
+    let on = ("resume", "icon-resume", "Go on");
+    let hidden = site.broken.is_none() || job.is_some();
+    button(html, on, Glyph::Play, hidden, !online || job.is_some());
     html.open(
         "span",
         &[
@@ -52,7 +75,7 @@ pub fn reads(html: &mut Markup, site: &Site, online: bool, now_us: u64, what: &[
             ("data-testid", "icon-job"),
         ],
     );
-    match &site.job {
+    match job {
         Some(job) => {
             let done = job.done.to_string();
             let total = job.total.max(1).to_string();
@@ -78,25 +101,6 @@ pub fn reads(html: &mut Markup, site: &Site, online: bool, now_us: u64, what: &[
         }
     }
     html.close("span");
-    html.node("span", "toolbar-gap", "");
-    Button {
-        act: "whole",
-        testid: "icon-whole",
-        words: "Read whole device",
-        glyph: Some(Glyph::Poll),
-        disabled: !idle,
-        ..Button::default()
-    }
-    .draw(html);
-    Button {
-        act: "save",
-        testid: "icon-save",
-        words: "Save snapshot",
-        glyph: Some(Glyph::Save),
-        disabled: site.dossier.is_empty() || site.job.is_some(),
-        ..Button::default()
-    }
-    .draw(html);
 }
 
 /// In place of the buttons: whose data a saved device are, and when they were read.
@@ -117,7 +121,10 @@ pub fn origin(html: &mut Markup, dossier: &Dossier) {
 
 /// What was asked for and did not come, for subjects that a screen shows.
 pub fn failures(html: &mut Markup, dossier: &Dossier, shows: impl Fn(Subject) -> bool) {
-    let failed: Vec<_> = dossier.failed.iter().filter(|(s, _)| shows(**s)).collect();
+    let failed = dossier.failed.iter();
+    let failed: Vec<_> = failed
+        .filter(|(s, f)| shows(**s) && dossier.has(f.step))
+        .collect();
     if failed.is_empty() {
         return;
     }
@@ -162,16 +169,26 @@ pub fn subject_name(subject: Subject) -> String {
     }
 }
 
-/// When something was read: `2 minutes ago`, exactly on hover.
-pub fn when(html: &mut Markup, then: i64, now: i64) {
-    let exact = format!("{} UTC", stamp(then));
-    html.open("time", &[("class", "quiet"), ("title", &exact)]);
-    html.text(&ago(then, now)).close("time");
+/// When these rows were read, the oldest first to be told.
+pub fn read_at(html: &mut Markup, dossier: &Dossier, rows: &[&'static Row], now: i64) {
+    let seen = rows.iter().filter_map(|row| dossier.image.row(row));
+    when(html, dossier, seen.map(|seen| seen.at.get()).min(), now);
+}
+
+/// When something was read: `Read 2 minutes ago, 2026-11-27 02:03:04 UTC.`, by its microseconds.
+pub fn when(html: &mut Markup, dossier: &Dossier, at: Option<u64>, now: i64) {
+    if let Some(at) = at {
+        let then = dossier.wall(at);
+        let words = format!("Read {}, {} UTC.", ago(then, now), stamp(then));
+        html.open("p", &[("class", "quiet"), ("data-testid", "read-at")]);
+        html.text(&words).close("p");
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::actuator::markup::rows::tests::device;
     use crate::actuator::state::job::Job;
     use crate::actuator::state::wanted::Wanted;
     use shared::device::Device;
@@ -208,6 +225,90 @@ mod tests {
         assert!(away.contains("No connection"));
     }
 
+    /// What is read again and again by itself disturbs nobody.
+    #[test]
+    fn a_quiet_job_is_not_shown() {
+        let mut site = Site {
+            dossier: Dossier::new("XV", Device::Icon3000v2),
+            last: "12 requests done.".into(),
+            ..Site::default()
+        };
+        let wanted = Wanted {
+            files: vec![2],
+            quiet: true,
+            ..Wanted::default()
+        };
+        site.job = Job::new(1, wanted.clone(), &site.dossier, 0, 0);
+        site.broken = Some((wanted, 0));
+        let html = drawn(|html| reads(html, &site, true, 0, &[("read", "Read")]));
+        assert!(html.contains("12 requests done.") && !html.contains("<progress"));
+        assert!(
+            !html.contains("data-testid=\"icon-read\" disabled"),
+            "{html}"
+        );
+        assert!(html.contains("data-testid=\"icon-resume\">"), "{html}");
+        site.lost();
+        assert_eq!(site.last, "12 requests done.");
+    }
+
+    #[test]
+    fn a_snapshot_with_gaps_is_asked_about() {
+        let mut site = Site {
+            dossier: device(&[(3004, &[1])]),
+            ..Site::default()
+        };
+        let draw = |site: &Site| drawn(|html| reads(html, site, true, 0, &[]));
+        assert!(!draw(&site).contains("icon-gaps"));
+        site.saving = true;
+        let html = draw(&site);
+        for part in [
+            "Not whole: ",
+            "parts not read.",
+            "icon-save-gaps",
+            "icon-whole",
+        ] {
+            assert!(html.contains(part), "{part}: {html}");
+        }
+    }
+
+    #[test]
+    fn the_time_of_a_read_is_told() {
+        let mut dossier = device(&[(3004, &[1]), (3005, &[1])]);
+        dossier.start_wall_ms = 1_765_000_000_000;
+        let rows = dossier.rows(&|row| (3004..=3005).contains(&row.address.get()));
+        let html = drawn(|html| read_at(html, &dossier, &rows, 1_765_000_181));
+        assert!(
+            html.contains("Read 3 minutes ago, 2025-12-06 05:46:41 UTC."),
+            "{html}"
+        );
+        assert_eq!(drawn(|html| read_at(html, &dossier, &[], 0)), "");
+    }
+
+    /// What was asked for to find out the model is no failure of a model that has not got it.
+    #[test]
+    fn a_probe_of_the_model_is_no_failure() {
+        let block = |start| {
+            IconStep::Block(shared::proto::Block {
+                table: shared::proto::TableName::Holding,
+                start,
+                count: 1,
+            })
+        };
+        let mut dossier = Dossier::new("XV", Device::Icon3000);
+        for start in [22, 44, 3480] {
+            dossier.fail(
+                block(start),
+                Outcome::Exception,
+                2,
+                "illegal data address",
+                1,
+            );
+        }
+        let html = drawn(|html| failures(html, &dossier, |_| true));
+        assert_eq!(html.matches("icon-failed").count(), 1, "{html}");
+        assert!(html.contains("holding registers from 44"));
+    }
+
     #[test]
     fn failures_say_what_and_why() {
         let mut dossier = Dossier::new("XV", Device::Icon3000v2);
@@ -216,8 +317,8 @@ mod tests {
             start: 0,
             count: 110,
         };
-        dossier.fail(file, Outcome::Exception, "illegal data address", 1);
-        dossier.fail(IconStep::Identity, Outcome::Silence, "", 1);
+        dossier.fail(file, Outcome::Exception, 2, "illegal data address", 1);
+        dossier.fail(IconStep::Identity, Outcome::Silence, 0, "", 1);
         let html = drawn(|html| failures(html, &dossier, |s| s == Subject::File(3500)));
         assert!(
             html.contains("file 3500") && html.contains("illegal data address"),

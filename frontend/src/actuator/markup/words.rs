@@ -7,8 +7,11 @@ use shared::icon3000::words::{
 use shared::map::row::Source;
 use shared::problem::Severity;
 
+use super::tools::read_at;
 use crate::actuator::state::dossier::Dossier;
+use crate::actuator::state::health::inputs as inputs_of;
 use crate::actuator::state::saved::model;
+use crate::actuator::state::wanted::within;
 use crate::markup::Markup;
 
 /// Registers that the sentences rest on: the first and how many.
@@ -24,11 +27,14 @@ pub const REGISTERS: [(u16, u16); 8] = [
 ];
 
 /// All sentences.
-pub fn words(html: &mut Markup, dossier: &Dossier) {
+pub fn words(html: &mut Markup, dossier: &Dossier, now: i64) {
     let Some(model) = model(dossier.device) else {
         return;
     };
     let image = &dossier.image;
+    let mut rows = dossier.rows(&|row| within(row, &REGISTERS));
+    rows.extend(inputs_of(dossier));
+    read_at(html, dossier, &rows, now);
     let test = pst(model, image);
     html.open("div", &[("class", "icon-words")]);
     html.open("section", &[("data-testid", "words-pst")]);
@@ -82,27 +88,17 @@ fn statements(html: &mut Markup, statements: &[Statement]) {
         }
         html.text(&said.text).text(" ");
         if said.inferred {
-            html.open(
-                "em",
-                &[
-                    ("class", "trust"),
-                    ("title", "The manual does not say it in so many words."),
-                ],
-            )
-            .text("inferred")
-            .close("em")
-            .text(" ");
+            html.node("em", "trust", "inferred").text(" ");
         }
-        proof(html, &said.registers, &said.source);
+        proof(html, &said.from, &said.source);
         html.close("li");
     }
     html.close("ul");
 }
 
 /// Where a sentence comes from.
-fn proof(html: &mut Markup, registers: &[u16], source: &Source) {
-    let registers: Vec<_> = registers.iter().map(|r| format!("HR {r}")).collect();
-    let text = format!("{} · {source}", registers.join(", "));
+fn proof(html: &mut Markup, from: &[String], source: &Source) {
+    let text = format!("{} · {source}", from.join(", "));
     html.node("span", "quiet proof", &text);
 }
 
@@ -156,7 +152,7 @@ mod tests {
 
     fn drawn(dossier: &Dossier) -> String {
         let mut html = Markup::new();
-        words(&mut html, dossier);
+        words(&mut html, dossier, 0);
         html.finish()
     }
 
@@ -184,6 +180,25 @@ mod tests {
             answer.split("</p>").next().unwrap().contains("No."),
             "{html}"
         );
+    }
+
+    /// On an ICON2000v4 discrete input 5 is what bit 5 of HR 3001 is later: REMOTE (tables 2 and 5).
+    #[test]
+    fn an_older_model_tells_by_its_inputs() {
+        let mut dossier = Dossier::new("x", shared::device::Device::Icon2000v4);
+        let addresses: Vec<_> = inputs_of(&dossier)
+            .iter()
+            .map(|r| r.address.get())
+            .collect();
+        assert_eq!((addresses.len(), addresses.first()), (30 + 5, Some(&0)));
+        let response = [2, 4, 0b0010_0000, 0, 0, 0];
+        assert!(dossier.absorb(&[2, 0, 0, 0, 30], &response, 1));
+        let html = drawn(&dossier);
+        assert!(
+            html.contains("in REMOTE") && html.contains("DI 5"),
+            "{html}"
+        );
+        assert!(html.contains("read-at"));
     }
 
     #[test]

@@ -20,65 +20,39 @@ use crate::markup::Markup;
 /// How many curves the device has stored: HR 3511 to 3514.
 const STORED: (u16, u16) = (3511, 4);
 
-/// The curves in the registers, how many files there are, and the reference and latest of them.
+/// The curves in the registers, and the reference and latest of the files.
 fn first(dossier: &Dossier) -> Wanted {
-    let mut wanted = Wanted {
+    Wanted {
         what: "curves".to_owned(),
+        files: FILES.iter().flat_map(|f| [f.0, f.0 + 1]).collect(),
         ..Wanted::default()
     }
-    .rows(rows(dossier).into_iter())
-    .registers(dossier, &[STORED, signature::SETTINGS]);
-    if is_v2(dossier) {
-        wanted.files = FILES.iter().flat_map(|f| [f.0, f.0 + 1]).collect();
-    }
-    wanted
+    .rows(&rows(dossier))
+    .registers(dossier, &[STORED, signature::SETTINGS])
 }
 
 /// The same, and every file that is stored.
 fn all(dossier: &Dossier) -> Wanted {
-    let mut wanted = first(dossier);
-    if is_v2(dossier) {
-        let files = [1000, 2000].into_iter().zip(curves::stored(dossier));
-        wanted.files = files
-            .flat_map(|(first, n)| first..=first + n.unwrap_or(1))
-            .collect();
+    Wanted {
+        files: Vec::new(),
+        runs: FILES.map(|f| f.0).to_vec(),
+        ..first(dossier)
     }
-    wanted
-}
-
-fn is_v2(dossier: &Dossier) -> bool {
-    dossier.device.map().is_some_and(|map| map.implements(20))
 }
 
 fn all_strokes(dossier: &Dossier) -> Wanted {
-    let wanted = Wanted {
+    Wanted {
         what: "partial strokes".to_owned(),
+        runs: [Kind::Pst, Kind::Efs].map(Kind::first).to_vec(),
         ..Wanted::default()
     }
-    .registers(dossier, &[STORED, strokes::LIMITS, (3023, 4)]);
-    let [_, _, pst, efs] = curves::stored(dossier);
-    let files = [(Kind::Pst, pst), (Kind::Efs, efs)];
-    let files = files
-        .into_iter()
-        .flat_map(|(kind, n)| kind.first()..=kind.first() + n.unwrap_or(1));
-    Wanted {
-        files: if is_v2(dossier) {
-            files.collect()
-        } else {
-            Vec::new()
-        },
-        ..wanted
-    }
+    .registers(dossier, &[STORED, strokes::LIMITS, (3023, 4)])
 }
 
-fn recorders(dossier: &Dossier) -> Wanted {
+fn recorders(_: &Dossier) -> Wanted {
     Wanted {
         what: "recorders".to_owned(),
-        files: if is_v2(dossier) {
-            RECORDERS.map(|r| r.0).to_vec()
-        } else {
-            Vec::new()
-        },
+        files: RECORDERS.map(|r| r.0).to_vec(),
         ..Wanted::default()
     }
 }

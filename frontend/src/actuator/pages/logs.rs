@@ -8,7 +8,7 @@ use super::registers::{fill_once, on_tool, toolbar};
 use super::save;
 use crate::actuator::markup::{logs, tools};
 use crate::actuator::state::dossier::{Dossier, Subject};
-use crate::actuator::state::logs::{Column, Filter, LOGS, Table, csv, json};
+use crate::actuator::state::logs::{Column, Filter, LOGS, Table, csv, json, logs_of, rows};
 use crate::actuator::state::wanted::Wanted;
 use crate::actuator::store::Store;
 use crate::browser::Narrow;
@@ -17,16 +17,14 @@ use crate::components::windowed::{DrawRow, Windowed};
 use crate::erased::memo;
 use crate::markup::Markup;
 
-/// Date and time of the actuator.
-const CLOCK: (u16, u16) = (3023, 4);
-
 fn all(dossier: &Dossier) -> Wanted {
     Wanted {
         what: "logs".to_owned(),
         files: LOGS.to_vec(),
         ..Wanted::default()
     }
-    .registers(dossier, &[CLOCK])
+    .registers(dossier, &[dossier.clock()])
+    .rows(&rows(dossier))
 }
 
 /// Alarms, warnings, connections, events, and file 5.
@@ -36,7 +34,8 @@ pub(super) fn LogsPage() -> impl IntoView {
     let narrow = use_context::<Narrow>();
     let file = memo(move || {
         let log = store.query("log").and_then(|log| log.parse().ok());
-        log.filter(|log| LOGS.contains(log)).unwrap_or(LOGS[0])
+        let there = |log: &u16| store.with(|d| logs_of(d).contains(log));
+        log.filter(there).unwrap_or(LOGS[0])
     });
     fill_once(store, all);
     let filter = RwSignal::new(Filter::default());
@@ -56,7 +55,8 @@ pub(super) fn LogsPage() -> impl IntoView {
     let count = Signal::derive(move || matching.with(Vec::len));
     let choose: Draw = Arc::new(move |html: &mut Markup| {
         let open = file.get();
-        logs::choose(html, open, |query| store.address("logs", query));
+        let logs = store.with(logs_of);
+        logs::choose(html, logs, open, |query| store.address("logs", query));
     });
     let filters: Draw = Arc::new(move |html: &mut Markup| {
         filter.with(|f| table.with(|t| logs::filters(html, t, f)));
@@ -65,7 +65,12 @@ pub(super) fn LogsPage() -> impl IntoView {
         let log = file.get();
         store.with(|d| {
             table.with(|t| logs::status(html, d, t, count.get()));
-            tools::failures(html, d, |s| s == Subject::File(log));
+            tools::failures(html, d, |s| match s {
+                Subject::File(file) => file == log,
+                // The clock, and the logs in registers.
+                Subject::Block(3, 15 | 3023 | 3090) | Subject::Block(4, 45) => true,
+                _ => false,
+            });
         });
     });
     let head: Draw = Arc::new(move |html: &mut Markup| {
@@ -92,6 +97,7 @@ pub(super) fn LogsPage() -> impl IntoView {
         }
         match act.name.as_str() {
             "text" => filter.update(|f| f.text = act.value),
+            "raw" => filter.update(|f| f.raw = !act.value.is_empty()),
             "code" => filter.update(|f| f.code = act.value.parse().ok()),
             "sort" => {
                 let column = match act.element.get_attribute("data-column").as_deref() {
@@ -125,7 +131,7 @@ pub(super) fn LogsPage() -> impl IntoView {
         table.with(|table| {
             let place = matching.with(|m| m.get(at).copied());
             if let Some(row) = place.and_then(|at| table.rows.get(at)) {
-                logs::row(html, table, row, offset, now);
+                logs::row(html, table, row, filter.with(|f| f.raw), offset, now);
             }
         });
     });

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use leptos::prelude::*;
+use shared::icon3000::identity::PROBES;
+use shared::proto::{Block, TableName};
 
 use super::{charts, save};
 use crate::actuator::markup::configuration::{self, Filter};
@@ -12,7 +14,7 @@ use crate::actuator::markup::{
 };
 use crate::actuator::state::dossier::{Dossier, Subject};
 use crate::actuator::state::wanted::{COUNTERS, Wanted};
-use crate::actuator::state::{health, rates, saved};
+use crate::actuator::state::{health, logs, rates, saved};
 use crate::actuator::store::Store;
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::erased::{effect, memo};
@@ -30,6 +32,7 @@ fn around(store: Store, opened: Opened, settings: bool) -> Around {
             0
         },
         settings,
+        ..Around::default()
     }
 }
 
@@ -58,7 +61,7 @@ pub(super) fn fill_once(store: Store, wanted: fn(&Dossier) -> Wanted) {
     let ready = memo(move || {
         let known = store
             .site
-            .with(|s| s.dossier.device.is_icon() && s.job.is_none());
+            .with(|s| s.dossier.device.is_icon() && s.shown_job().is_none());
         store.is_live() && store.online.get() && known
     });
     let asked = StoredValue::new(String::new());
@@ -99,10 +102,13 @@ pub(super) fn on_tool(store: Store, act: &Act, wanted: fn(&Dossier) -> Wanted) -
         }
         "save" => {
             let now = store.now.get_untracked();
-            let saved = store
-                .site
-                .with_untracked(|s| saved::snapshot(&s.dossier, now));
-            if let Some(saved) = saved {
+            let saved = store.site.try_update(|site| {
+                // What is not whole is saved at the second time of asking.
+                site.saving = !site.saving && !saved::gaps(&site.dossier).is_empty();
+                let saved = || saved::snapshot(&site.dossier, now);
+                (!site.saving).then(saved).flatten()
+            });
+            if let Some(saved) = saved.flatten() {
                 let name = format!("{}-snapshot", saved.tag);
                 save(&name, "json", &saved.to_text());
             }
@@ -121,13 +127,13 @@ fn failures(store: Store, shows: fn(Subject) -> bool) -> Draw {
 }
 
 fn all_settings(dossier: &Dossier) -> Wanted {
-    let mut wanted = Wanted {
+    Wanted {
         what: "settings".to_owned(),
         ..Wanted::default()
     }
-    .rows(configuration::writable(dossier).into_iter());
-    wanted = wanted.registers(dossier, &words::REGISTERS);
-    wanted
+    .rows(&configuration::writable(dossier))
+    .registers(dossier, &words::REGISTERS)
+    .rows(&health::inputs(dossier))
 }
 
 /// All that can be set.
@@ -144,7 +150,7 @@ pub(super) fn ConfigurationPage() -> impl IntoView {
         store.with(|d| {
             configuration::logged_in(html, d);
             heading(html, "In words", "");
-            words::words(html, d);
+            words::words(html, d, store.now.get());
             heading(html, "Settings", "as the groups of the manual");
         });
     });
@@ -180,10 +186,10 @@ fn channels(dossier: &Dossier) -> Wanted {
         counters: COUNTERS.to_vec(),
         ..Wanted::default()
     }
-    .rows(communication::all_registers(dossier).into_iter())
+    .rows(&communication::all_registers(dossier))
 }
 
-/// How often the counters are read while that is on, in seconds.
+/// How often health, and the counters while that is on, are read anew, in seconds.
 const PERIOD: i64 = 5;
 
 /// The Modbus interface of the device.
@@ -197,14 +203,15 @@ pub(super) fn CommunicationPage() -> impl IntoView {
         let due = store.now.get() % PERIOD == 0;
         if due && watched.get_untracked() {
             store.read(Wanted {
-                what: "counters".to_owned(),
                 counters: COUNTERS.to_vec(),
+                quiet: true,
                 ..Wanted::default()
             });
         }
     });
     let counters: Draw = Arc::new(move |html: &mut Markup| {
-        store.with(|d| communication::counters(html, d));
+        let now = store.now.get();
+        store.with(|d| communication::counters(html, d, now));
     });
     let watch: Draw = Arc::new(move |html: &mut Markup| {
         if store.is_live() {
@@ -243,29 +250,21 @@ pub(super) fn CommunicationPage() -> impl IntoView {
 }
 
 fn who(dossier: &Dossier) -> Wanted {
-    let cards = 5300..=5304;
-    Wanted {
+    let mut wanted = Wanted {
         what: "identity".to_owned(),
         identity: true,
-        files: if dossier.device.implements(20) {
-            cards.collect()
-        } else {
-            Vec::new()
-        },
+        files: (5300..=5304).collect(),
         ..Wanted::default()
     }
-    .registers(dossier, &WHO)
+    .rows(&dossier.rows(&identity::is_told));
+    // Each by itself, whatever the map says: whether they answer tells the model.
+    wanted.blocks.extend(PROBES.map(|start| Block {
+        table: TableName::Holding,
+        start,
+        count: 1,
+    }));
+    wanted
 }
-
-/// Registers that say who the device is: numbers, tags, versions, types, dates.
-const WHO: [(u16, u16); 6] = [
-    (3000, 1),
-    (3034, 54),
-    (3460, 21),
-    (3654, 2),
-    (3742, 30),
-    (44, 2),
-];
 
 /// Who the device is.
 #[component]
@@ -279,34 +278,44 @@ pub(super) fn IdentityPage() -> impl IntoView {
             Subject::Identity | Subject::Block(..) => true,
             Subject::Diagnostic(_) => false,
         },
-        |html, _, dossier| identity::identity(html, dossier),
+        |html, store, dossier| identity::identity(html, dossier, store.now.get()),
     )
 }
 
 fn what_is_wrong(dossier: &Dossier) -> Wanted {
-    let logs = if dossier.device.implements(20) {
-        vec![2, 3]
-    } else {
-        Vec::new()
-    };
     Wanted {
         what: "health".to_owned(),
-        files: logs,
+        files: vec![2, 3],
         ..Wanted::default()
     }
-    .rows(health::rows(dossier).into_iter())
+    .rows(&health::rows(dossier))
+    .rows(&logs::rows(dossier))
 }
 
 /// What is wrong with the device.
 #[component]
 pub(super) fn HealthPage() -> impl IntoView {
+    let store = Store::get();
+    // As the page around does, so that both say the same.
+    effect(move || {
+        let due = store.now.get() % PERIOD == 0;
+        if due && store.is_live() && !document().hidden() {
+            let rows = store.site.with_untracked(|s| health::rows(&s.dossier));
+            let quiet = Wanted {
+                quiet: true,
+                ..Wanted::default()
+            };
+            store.read(quiet.rows(&rows));
+        }
+    });
     drawn_page(
         "page-health",
         &[("read", "Read health")],
         what_is_wrong,
         |s| matches!(s, Subject::File(2 | 3) | Subject::Block(..)),
         |html, store, dossier| {
-            markup_health::health(html, dossier, &store.address("logs", ""));
+            let now = store.now.get();
+            markup_health::health(html, dossier, &store.address("logs", ""), now);
         },
     )
 }

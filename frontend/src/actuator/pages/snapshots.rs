@@ -8,18 +8,17 @@ use leptos::task::spawn_local;
 use shared::icon3000::snapshot::{Diff, diff};
 use wasm_bindgen::JsCast;
 
-use crate::actuator::markup::snapshots::{self, Entry};
+use crate::actuator::markup::snapshots::{self, Entry, LIVE};
+use crate::actuator::markup::tools;
 use crate::actuator::state::dossier::Dossier;
 use crate::actuator::state::saved;
+use crate::actuator::state::wanted::Wanted;
 use crate::actuator::store::Store;
 use crate::components::drawn::{Act, Draw, Drawn};
 use crate::components::icon::{Glyph, Icon};
-use crate::erased::memo;
+use crate::erased::{effect, memo};
 use crate::format::encode;
 use crate::markup::Markup;
-
-/// How keys of devices on the line begin.
-const LIVE: &str = "live:";
 
 /// Files that are open, and two of them compared.
 #[component]
@@ -27,11 +26,22 @@ pub(super) fn SnapshotsPage() -> impl IntoView {
     let store = Store::get();
     let trouble = RwSignal::new(String::new());
     let passing = RwSignal::new(false);
-    let sites = StoredValue::new(store.sites());
-    let entries = memo(move || entries(store, &sites.get_value()));
+    // The last read of a device counts once it is over.
+    let sites = RwSignal::new(store.sites());
+    effect(move || {
+        store.site.with(|site| {
+            if site.job.is_none() && !site.dossier.tag.is_empty() {
+                sites.update(|sites| {
+                    sites.retain(|d| d.tag != site.dossier.tag);
+                    sites.push(Arc::new(site.dossier.clone()));
+                });
+            }
+        });
+    });
+    let entries = memo(move || sites.with(|sites| entries(store, sites)));
     let found = move |key: &str| -> Option<Arc<Dossier>> {
         match key.strip_prefix(LIVE) {
-            Some(tag) => sites.with_value(|sites| sites.iter().find(|d| d.tag == tag).cloned()),
+            Some(tag) => sites.with(|sites| sites.iter().find(|d| d.tag == tag).cloned()),
             None => {
                 let at: usize = key.parse().ok()?;
                 store
@@ -93,7 +103,15 @@ pub(super) fn SnapshotsPage() -> impl IntoView {
         entries.with(|entries| {
             if !entries.is_empty() {
                 let (first, second) = (first.get(), second.get());
-                snapshots::choices(html, entries, &first, &second, passing.get());
+                let (online, now) = (store.online.get(), store.now_us.get());
+                store.site.with(|site| {
+                    let idle = online && site.job.is_none();
+                    let pair = (first.as_str(), second.as_str());
+                    snapshots::choices(html, entries, pair, passing.get(), idle);
+                    if !site.dossier.tag.is_empty() {
+                        tools::progress(html, site, online, now);
+                    }
+                });
             }
         });
     });
@@ -111,6 +129,19 @@ pub(super) fn SnapshotsPage() -> impl IntoView {
             "second" => compare(store, &a, &act.value),
             "swap" => compare(store, &b, &a),
             "passing" => passing.set(!act.value.is_empty()),
+            "cancel" => store.cancel(),
+            "resume" => store.resume(),
+            "fresh" => {
+                let live = [b, a].into_iter();
+                let tag = live
+                    .filter_map(|key| key.strip_prefix(LIVE).map(str::to_owned))
+                    .next();
+                store.visit(&tag.unwrap_or_default());
+                let wanted = store
+                    .site
+                    .with_untracked(|s| Wanted::everything(&s.dossier));
+                store.read(wanted);
+            }
             _ => {
                 let key = act.element.get_attribute("data-key").unwrap_or_default();
                 if let Ok(at) = key.parse() {

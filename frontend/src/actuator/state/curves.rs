@@ -1,6 +1,5 @@
 //! Torque signatures: every curve that a device holds, from its registers and from its files.
 
-use shared::address::Table;
 use shared::few;
 use shared::icon3000::curve::{Curve, Direction, Origin, Which};
 use shared::map::row::{Kind, Row};
@@ -15,7 +14,7 @@ pub const FILES: [(u16, bool); 2] = [(1000, true), (2000, false)];
 /// A torque curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// Identifier: `hr-3328`, `file-1001`.
+    /// Identifier: `hr-3328`, `ir-241`, `file-1001`.
     pub key: String,
     /// What it is: `Open, latest`.
     pub label: String,
@@ -85,20 +84,17 @@ pub fn traces(dossier: &Dossier) -> Vec<Trace> {
     found
 }
 
-/// Rows of the map that hold a curve, holding registers before their copies.
+/// Rows of the map that hold a curve.
 #[must_use]
 pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
-    let Some(map) = dossier.device.map() else {
-        return Vec::new();
-    };
-    let rows = map.rows_of(Table::Holding).iter().copied();
-    rows.filter(|row| row.kind == Kind::Curve).collect()
+    dossier.rows(&|row| row.kind == Kind::Curve)
 }
 
 fn of_registers(dossier: &Dossier, row: &'static Row) -> Option<Trace> {
     let bytes = dossier.image.bytes(row)?;
     let curve = Curve::of_registers(row, &bytes)?;
-    Some(trace(curve, format!("hr-{}", row.address.get())))
+    let key = format!("{}-{}", row.table.short().to_ascii_lowercase(), row.address);
+    Some(trace(curve, key))
 }
 
 fn trace(curve: Curve, key: String) -> Trace {
@@ -111,7 +107,7 @@ fn trace(curve: Curve, key: String) -> Trace {
         Origin::Register(row) => {
             let first = row.address.get();
             let last = first.saturating_add(row.words).saturating_sub(1);
-            format!("HR {first} to {last}")
+            format!("{} {first} to {last}", row.table.short())
         }
         Origin::File(number) => format!("file {number}"),
     };
@@ -175,7 +171,7 @@ impl Preset {
         };
         let doubled = |t: &Trace| {
             self != Self::All
-                && t.key.starts_with("hr")
+                && !t.key.starts_with("file")
                 && traces.iter().any(|other| {
                     other.key.starts_with("file")
                         && (other.opening, other.number) == (t.opening, t.number)
@@ -285,6 +281,30 @@ mod tests {
         assert_eq!(trace.when(), "2024-02-29 12:34:56");
         let facts = trace.facts().map(|f| f.1);
         assert_eq!(facts, ["30", "400", "25", "24", "-5"]);
+    }
+
+    /// The ICON2000v4 has its curves in input registers: 113 last close, 177 reference close, 241
+    /// last open, 305 reference open (table 3).
+    #[test]
+    fn curves_of_an_older_model_are_in_input_registers() {
+        let mut dossier = registers();
+        let words = dossier.image.bytes(rows(&dossier)[2]).unwrap();
+        dossier = Dossier::new("XV", Device::Icon2000v4);
+        let starts: Vec<_> = rows(&dossier).iter().map(|r| r.address.get()).collect();
+        assert_eq!(starts, [113, 177, 241, 305]);
+        let mut response = vec![4, 128];
+        response.extend(words);
+        assert!(dossier.absorb(&[4, 0, 241, 0, 64], &response, 1));
+        let traces = traces(&dossier);
+        let [trace] = &traces[..] else {
+            panic!("{traces:?}");
+        };
+        assert_eq!(trace.key, "ir-241");
+        assert_eq!(
+            (trace.label.as_str(), trace.place.as_str()),
+            ("Open, latest", "IR 241 to 304")
+        );
+        assert_eq!(Preset::Opening.of(&traces), ["ir-241"]);
     }
 
     /// An actuator that never stored a curve has zeros there, not a curve of no torque.

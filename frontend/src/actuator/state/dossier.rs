@@ -2,16 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use shared::address::Table;
+use shared::address::{Address, Table};
 use shared::capture::Micros;
 use shared::device::Device;
+use shared::icon3000::plan::Probe;
 use shared::icon3000::records::groups;
-use shared::icon3000::{FileRead, Files, Log, Records};
+use shared::icon3000::{FileRead, Files, Log, Records, Span};
 use shared::image::Image;
+use shared::map::row::{Access, DeviceMap, Kind, Row};
 use shared::proto::{IconStep, Outcome, TableName};
-use shared::value::Value;
 
-use crate::chart::time::Civil;
+use super::logs::moment;
+use super::wanted::LIMITS;
 
 /// A record of a file, and when it was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,10 +31,14 @@ pub struct Failure {
     pub step: IconStep,
     /// How it ended.
     pub outcome: Outcome,
+    /// The code of an exception; 0 for none.
+    pub code: u8,
     /// In words.
     pub text: String,
     /// When.
     pub at: u64,
+    /// True once it is to be tried again.
+    pub again: bool,
 }
 
 /// An answer as it came.
@@ -113,6 +119,8 @@ pub struct Dossier {
     pub counters: BTreeMap<u16, Vec<Reading>>,
     /// What could not be read.
     pub failed: BTreeMap<Subject, Failure>,
+    /// How far the file is known whose length nothing tells, and since when.
+    pub probe: Option<(Probe, u64)>,
 }
 
 impl Dossier {
@@ -203,19 +211,90 @@ impl Dossier {
                 *record = Some(Record { word, at });
             }
             self.failed.remove(&Subject::File(span.file));
+            self.probed(*span, true, at);
         }
         asked.spans().first().map(|span| Subject::File(span.file))
     }
 
-    /// Notes that something could not be read.
-    pub fn fail(&mut self, step: IconStep, outcome: Outcome, text: &str, at: u64) {
+    /// Goes on in the file whose length nothing tells, if that is what was asked for.
+    fn probed(&mut self, span: Span, answered: bool, at: u64) {
+        let anew = Probe::new(LIMITS, 0);
+        let known = self.probe.filter(|_| anew.next() != Some(span));
+        let mut probe = known.map_or(anew, |(probe, _)| probe);
+        if probe.next() == Some(span) {
+            if answered {
+                probe.answered();
+            } else {
+                probe.refused();
+            }
+            self.probe = Some((probe, at));
+        }
+    }
+
+    /// Notes that something could not be read; `code` is that of an exception, or 0.
+    pub fn fail(&mut self, step: IconStep, outcome: Outcome, code: u8, text: &str, at: u64) {
+        if let (IconStep::File { file, start, count }, 2) = (step, code) {
+            self.probed(Span::new(file, start, count), false, at);
+            // Beyond its end is no failure, unless not even its first record is there.
+            let goes_on = |(p, _): (Probe, u64)| p.next().is_some() || p.found() > 0;
+            if file == LIMITS && self.probe.is_some_and(goes_on) {
+                return;
+            }
+        }
         let failure = Failure {
             step,
             outcome,
+            code,
             text: text.to_owned(),
             at,
+            again: false,
         };
         self.failed.insert(Subject::of(step), failure);
+    }
+
+    /// Rows that a device has, holding registers first; of what the input registers show once more
+    /// (reading E44) the holding registers are taken.
+    #[must_use]
+    pub fn rows(&self, wanted: &dyn Fn(&Row) -> bool) -> Vec<&'static Row> {
+        let mut found: Vec<&'static Row> = Vec::new();
+        let maps = self.device.map().into_iter();
+        let tables = [Table::Holding, Table::Input];
+        let rows = maps.flat_map(|map| tables.into_iter().flat_map(|t| map.rows_of(t)));
+        for row in rows {
+            let there = row.access != Access::Absent && row.kind != Kind::Reserved;
+            if there && wanted(row) && found.iter().all(|r| r.key != row.key) {
+                found.push(row);
+            }
+        }
+        found
+    }
+
+    /// The row with a key.
+    #[must_use]
+    pub fn row(&self, key: &str) -> Option<&'static Row> {
+        self.rows(&|row| row.key == key).first().copied()
+    }
+
+    /// True if the device should have what a step asks for, as far as its map tells; what is asked
+    /// for to find out which model it is may be beyond that.
+    #[must_use]
+    pub fn has(&self, step: IconStep) -> bool {
+        let IconStep::Block(block) = step else {
+            return true;
+        };
+        let table = Table::from(block.table);
+        let row = |map: &'static DeviceMap| map.row_at(table, Address::new(block.start));
+        let row = self.device.map().and_then(row);
+        row.is_some_and(|row| row.access != Access::Absent && row.kind != Kind::Reserved)
+    }
+
+    /// Date and time of the device: two registers each. The ICON2000v4 has none but the first.
+    #[must_use]
+    pub const fn clock(&self) -> (u16, u16) {
+        match self.device {
+            Device::Icon2000v4 => (15, 4),
+            _ => (3023, 4),
+        }
     }
 
     /// The records of a file that were read at a time or later.
@@ -254,28 +333,13 @@ impl Dossier {
     /// is not told. `None` if they were not read or hold no time.
     #[must_use]
     pub fn clock_offset(&self) -> Option<i64> {
+        let (start, _) = self.clock();
         let map = self.device.map()?;
-        let row = |key| map.by_key(Table::Holding, key);
-        let date = self.image.row(row("current_date")?)?;
-        let time = self.image.row(row("current_time")?)?;
-        let (
-            Value::Date { year, month, day },
-            Value::Time {
-                hour,
-                minute,
-                second,
-            },
-        ) = (date.judged.value, time.judged.value)
-        else {
-            return None;
-        };
-        let civil = Civil {
-            year: i64::from(year),
-            month: i64::from(month),
-            day: i64::from(day),
-            second: i64::from(hour) * 3600 + i64::from(minute) * 60 + i64::from(second),
-        };
-        Some(civil.seconds() - self.wall(time.at.get()))
+        let row = |at| map.row_at(Table::Holding, Address::new(at));
+        let date = self.image.row(row(start)?)?;
+        let time = self.image.row(row(start + 2)?)?;
+        let then = moment(Some(date.judged.value), Some(time.judged.value))?;
+        Some(then - self.wall(time.at.get()))
     }
 
     /// When the oldest of the records of a file was read.
@@ -295,7 +359,6 @@ impl Dossier {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::address::Address;
 
     fn empty() -> Dossier {
         Dossier::new("XV-101", Device::Icon3000v2)
@@ -361,7 +424,7 @@ mod tests {
     fn registers_identity_and_counters_are_kept() {
         let mut dossier = empty();
         let step = IconStep::Diagnostic { sub_function: 11 };
-        dossier.fail(step, Outcome::Silence, "no answer", 1);
+        dossier.fail(step, Outcome::Silence, 0, "no answer", 1);
         assert!(dossier.absorb(&[3, 0x0B, 0xBC, 0, 1], &[3, 2, 0, 0xF0], 7));
         let cell = dossier.image.cell(Table::Holding, Address::new(3004));
         assert_eq!(cell.map(|c| c.word), Some(0xF0));

@@ -3,11 +3,10 @@
 use shared::address::Table;
 use shared::few;
 use shared::icon3000::model::{HEALTH, Meaning};
-use shared::map::row::{Access, Kind, Row};
-use shared::value::Value;
+use shared::map::row::{DeviceMap, Kind, Model, Row, Set};
 
 use super::dossier::Dossier;
-use super::logs::Y2K;
+use super::logs::Table as Log;
 
 /// A code of a log.
 #[derive(Clone, Debug)]
@@ -23,31 +22,33 @@ pub struct Past {
 }
 
 /// The words of a device that say what is wrong, in the order of the map. The holding registers
-/// have them all; older masters read the copies in the input registers.
+/// have them all but on an ICON2000v4.
 #[must_use]
 pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
-    let Some(map) = dossier.device.map() else {
+    let mut rows = inputs(dossier);
+    if rows.is_empty() {
+        rows = dossier.rows(&|row| {
+            let told = |set: &Set| HEALTH.iter().any(|m| m.set == set.name);
+            row.kind == Kind::Bits && row.set.is_some_and(told)
+        });
+    }
+    rows
+}
+
+/// The inputs of an ICON2000v4 that tell what later models have in holding registers: its state,
+/// alarms, warnings and measurements. No others have any.
+#[must_use]
+pub fn inputs(dossier: &Dossier) -> Vec<&'static Row> {
+    let old = |map: &&DeviceMap| map.model == Model::Icon2000v4;
+    let Some(map) = dossier.device.map().filter(old) else {
         return Vec::new();
     };
-    let told = |row: &&Row| {
-        row.kind == Kind::Bits
-            && row.access != Access::Absent
-            && row
-                .set
-                .is_some_and(|set| HEALTH.iter().any(|m| m.set == set.name))
+    let told = |row: &&Row| match row.table {
+        Table::Discrete => row.kind != Kind::Reserved,
+        Table::Input => row.address.get() < 5,
+        _ => false,
     };
-    let rows = |table| {
-        let rows = map.rows_of(table).iter().copied();
-        rows.filter(told).collect::<Vec<_>>()
-    };
-    let mut found = rows(Table::Holding);
-    for copy in rows(Table::Input) {
-        let set = |row: &Row| row.set.map(|s| s.name);
-        if found.iter().all(|row| set(row) != set(copy)) {
-            found.push(copy);
-        }
-    }
-    found
+    map.rows.iter().copied().filter(told).collect()
 }
 
 /// What the logs of alarms and warnings tell, the latest first, at most so many.
@@ -55,21 +56,15 @@ pub fn rows(dossier: &Dossier) -> Vec<&'static Row> {
 pub fn past(dossier: &Dossier, most: usize) -> Vec<Past> {
     let mut found: Vec<Past> = Vec::new();
     for (file, set) in [(2, "alarm_code"), (3, "warning_code")] {
-        let Some(log) = dossier.log(file) else {
-            continue;
-        };
-        let valid = |number: u16| log.stored.is_none_or(|stored| number <= stored);
-        for entry in log.entries.iter().filter(|e| valid(e.number)) {
-            let Some(Value::Code { raw, .. }) = entry.get("code").map(|i| i.value) else {
-                continue;
-            };
+        for row in Log::of(dossier, file).rows {
+            let code = row.cells.first().cloned().flatten().and_then(|c| c.number);
             let mut meanings = HEALTH.iter();
-            let meaning = meanings.find(|m| m.set == set && u32::from(m.value) == raw);
+            let meaning = meanings.find(|m| m.set == set && Some(i64::from(m.value)) == code);
             if let Some(meaning) = meaning {
                 found.push(Past {
                     meaning,
-                    time: entry.time().map(|t| Y2K + i64::from(t)),
-                    number: entry.number,
+                    time: row.time,
+                    number: row.number,
                     file,
                 });
             }
@@ -91,17 +86,32 @@ mod tests {
     /// Everything that the list of conditions needs is read.
     #[test]
     fn every_word_of_the_list_is_read() {
-        let dossier = device(&[]);
-        let wanted: Vec<_> = rows(&dossier).iter().map(|r| r.address.get()).collect();
-        let health =
-            shared::icon3000::health::health(model(dossier.device).unwrap(), &dossier.image);
-        assert!(
-            health
-                .unread
-                .iter()
-                .all(|r| wanted.contains(&r.address.get()))
-        );
+        for device in [Device::Icon2000v4, Device::Icon3000, Device::Icon3000v2] {
+            let dossier = Dossier::new("x", device);
+            let wanted = rows(&dossier);
+            let model = model(device).unwrap();
+            let health = shared::icon3000::health::health(model, &dossier.image);
+            assert!(!health.unread.is_empty());
+            let read = |row: &&&Row| wanted.iter().any(|w| core::ptr::eq(*w, **row));
+            assert_eq!(health.unread.iter().find(|r| !read(r)), None, "{device:?}");
+        }
         assert!(rows(&Dossier::new("x", Device::None)).is_empty());
+    }
+
+    /// The ICON2000v4 tells its latest alarm in IR 45 to 49: code 12, 2024-02-29 12:34:56.
+    #[test]
+    fn registers_tell_the_past_of_an_older_model() {
+        let mut dossier = Dossier::new("x", Device::Icon2000v4);
+        let words = [0, 12, 0x29, 0x02, 0x20, 0x24, 0, 0x12, 0x34, 0x56];
+        let mut response = vec![4, 10];
+        response.extend(words);
+        assert!(dossier.absorb(&[4, 0, 45, 0, 5], &response, 1));
+        let past = past(&dossier, 9);
+        assert_eq!((past.len(), past[0].meaning.value), (1, 12));
+        let time = past[0].time.map(crate::chart::time::stamp);
+        assert_eq!(time.as_deref(), Some("2024-02-29 12:34:56"));
+        let wanted = rows(&dossier);
+        assert!(wanted.iter().any(|r| r.key == "alarms_1"));
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Reading under way: how far it is, how long it may take, and what comes next.
 
+use shared::icon3000::FileRead;
 use shared::proto::{IconNews, IconStep, Outcome};
 
 use super::dossier::Dossier;
-use super::wanted::Wanted;
+use super::wanted::{Wanted, step_of};
 
 /// What is being read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,15 +76,27 @@ impl Job {
                 let Some(step) = step.and_then(|at| self.steps.get(at)).copied() else {
                     return false;
                 };
-                let good = *outcome == Outcome::Ok
-                    && dossier.absorb(&bytes_of(request), &bytes_of(response), *at_us);
-                if !good {
-                    let text = if *outcome == Outcome::Ok {
-                        "The answer does not fit what was asked."
-                    } else {
-                        text
-                    };
-                    dossier.fail(step, *outcome, text, *at_us);
+                let (request, response) = (bytes_of(request), bytes_of(response));
+                let ok = *outcome == Outcome::Ok;
+                if ok && dossier.absorb(&request, &response, *at_us) {
+                    return false;
+                }
+                let text = if ok {
+                    "The answer does not fit what was asked."
+                } else {
+                    text
+                };
+                let code = match response[..] {
+                    [function, code] if function >= 0x80 => code,
+                    _ => 0,
+                };
+                let mut fail = |step| dossier.fail(step, *outcome, code, text, *at_us);
+                match (step, FileRead::of_pdu(&request)) {
+                    // A request may hold parts of several files, not only of that of the step.
+                    (IconStep::File { .. }, Some(read)) => {
+                        read.spans().iter().copied().map(step_of).for_each(fail);
+                    }
+                    _ => fail(step),
                 }
             }
             IconNews::Progress {
@@ -242,6 +255,26 @@ mod tests {
         assert!(job.is_whole(&dossier) && !job.next(3, &dossier));
         assert_eq!(dossier.records(2, 0).len(), 7);
         assert_eq!((job.done, job.total), (3, 3));
+    }
+
+    /// One request may hold parts of several files: all of them failed, whichever step it was for;
+    /// asked for one by one, each tells of itself.
+    #[test]
+    fn a_failure_names_every_file_of_its_request() {
+        use crate::actuator::state::dossier::Subject;
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        let mut job = Job::new(1, wanted(), &dossier, 0, 0).unwrap();
+        let both = "140E06000200000001".to_owned() + "06000300000001";
+        job.hear(&exchange(0, &both, "", Outcome::Silence), &mut dossier);
+        let codes = |dossier: &Dossier| -> Vec<_> {
+            let failed = dossier.failed.iter();
+            failed.map(|(subject, f)| (*subject, f.code)).collect()
+        };
+        let (two, three) = (Subject::File(2), Subject::File(3));
+        assert_eq!(codes(&dossier), [(two, 0), (three, 0)]);
+        let refused = exchange(0, "140706000300000001", "9402", Outcome::Exception);
+        job.hear(&refused, &mut dossier);
+        assert_eq!(codes(&dossier), [(two, 0), (three, 2)]);
     }
 
     #[test]

@@ -1,25 +1,52 @@
 //! A log as a table: sorted, filtered, exported.
 
+mod export;
 #[cfg(test)]
 pub(crate) mod tests;
+
+pub use export::{csv, json};
 
 use core::cmp::Ordering;
 
 use shared::icon3000::model::{Field, File, Kind};
+use shared::icon3000::say::bytes_of;
 use shared::icon3000::{Item, Log};
+use shared::map::row::Row as MapRow;
 use shared::value::{Quality, Value};
 
 use super::dossier::Dossier;
-use crate::chart::table::quote;
+use super::wanted::LIMITS;
 use crate::chart::ticks::ordered;
-use crate::chart::time::stamp;
-use crate::state::json::quoted;
+use crate::chart::time::{Civil, stamp};
 
 /// Seconds from 1970 to 2000, where the clock of the device begins (reading E73).
 pub const Y2K: i64 = 946_684_800;
 
-/// Logs that the screen shows, by file.
-pub const LOGS: [u16; 5] = [2, 3, 4, 5000, 5];
+/// Logs that the screen shows, by file. Before the ICON3000v2 there are no files, but the five
+/// latest alarms and warnings in registers.
+pub const LOGS: [u16; 5] = [2, 3, 4, 5000, LIMITS];
+
+/// The logs that a device has.
+#[must_use]
+pub fn logs_of(dossier: &Dossier) -> &'static [u16] {
+    if dossier.device.implements(20) {
+        &LOGS
+    } else {
+        &LOGS[..2]
+    }
+}
+
+/// Registers with the latest alarms and warnings, on a model without files.
+#[must_use]
+pub fn rows(dossier: &Dossier) -> Vec<&'static MapRow> {
+    if dossier.device.implements(20) {
+        return Vec::new();
+    }
+    dossier.rows(&|row| LISTS.iter().any(|list| row.key.starts_with(list)))
+}
+
+/// How the keys of the registers of a log begin: those of alarms, those of warnings.
+const LISTS: [&str; 2] = ["alarm_log_", "warning_log_"];
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +79,8 @@ pub struct Row {
 pub struct Table {
     /// Number of the file.
     pub file: u16,
-    /// Its name.
-    pub name: String,
+    /// Where its entries stand: `file 2`, or registers.
+    pub place: String,
     /// What an entry is called.
     pub item: &'static str,
     /// Where the manual describes it.
@@ -81,7 +108,7 @@ impl Table {
         };
         let mut table = Self {
             file,
-            name: described.name(file).into_owned(),
+            place: format!("file {file}"),
             item: described.item,
             source: described.source.to_string(),
             note: described.note,
@@ -94,6 +121,9 @@ impl Table {
         let shown = |f: &&Field| f.kind != Kind::Unused && f.key != "time";
         table.columns = layout.entry.iter().filter(shown).collect();
         let Some(log) = dossier.log(file) else {
+            if !dossier.device.implements(20) {
+                table.registers(dossier);
+            }
             return table;
         };
         table.stored = log.stored;
@@ -116,6 +146,39 @@ impl Table {
             });
         }
         table
+    }
+
+    /// The five latest entries in registers: code, date and time of each. Code 0 is no entry.
+    fn registers(&mut self, dossier: &Dossier) {
+        let list = LISTS[usize::from(self.file != 2)];
+        let rows = dossier.rows(&|row| row.key.starts_with(list));
+        if let (Some(first), Some(last)) = (rows.first(), rows.last()) {
+            let end = last.address.get() + last.words - 1;
+            self.place = format!("{} {} to {end}", first.table.short(), first.address);
+            self.source = first.source.to_string();
+        }
+        for (number, entry) in (1..).zip(rows.chunks(3)) {
+            let part = |at: usize| Some((*entry.get(at)?, dossier.image.row(entry.get(at)?)?));
+            let Some((row, seen)) = part(0) else { continue };
+            let Value::Code { raw, .. } = seen.judged.value else {
+                continue;
+            };
+            let value = |at: usize| part(at).map(|(_, seen)| seen.judged.value);
+            if raw > 0 {
+                let bytes = dossier.image.bytes(row).unwrap_or_default();
+                self.rows.push(Row {
+                    number,
+                    time: moment(value(1), value(2)),
+                    cells: vec![Some(Cell {
+                        text: bytes_of(row, &bytes),
+                        unit: "",
+                        raw: format!("{raw:04X}"),
+                        quality: seen.judged.quality,
+                        number: Some(raw.into()),
+                    })],
+                });
+            }
+        }
     }
 
     /// Reading E69: nothing is known about the file, so each record is a row of its own.
@@ -240,6 +303,29 @@ impl Row {
     }
 }
 
+/// Seconds since 1970 of a date and a time.
+#[must_use]
+pub fn moment(date: Option<Value>, time: Option<Value>) -> Option<i64> {
+    let (
+        Value::Date { year, month, day },
+        Value::Time {
+            hour,
+            minute,
+            second,
+        },
+    ) = (date?, time?)
+    else {
+        return None;
+    };
+    let civil = Civil {
+        year: i64::from(year),
+        month: i64::from(month),
+        day: i64::from(day),
+        second: i64::from(hour) * 3600 + i64::from(minute) * 60 + i64::from(second),
+    };
+    Some(civil.seconds())
+}
+
 /// The values of a head that say more than how many entries there are.
 fn head(log: &Log) -> Vec<(String, String)> {
     let items = log.head.iter().flatten();
@@ -285,6 +371,8 @@ pub struct Filter {
     pub column: Column,
     /// True for the largest first.
     pub down: bool,
+    /// True to show the words of the device and not what they mean.
+    pub raw: bool,
 }
 
 impl Filter {
@@ -293,91 +381,4 @@ impl Filter {
         self.down = self.column == column && !self.down;
         self.column = column;
     }
-}
-
-/// A time of the device for programs: `2024-02-29T00:00:00`, without a zone, because none is told.
-fn iso(seconds: i64) -> String {
-    stamp(seconds).replace(' ', "T")
-}
-
-/// Rows as comma-separated values with a head line. `offset` is what the clock of the device is
-/// ahead of UTC.
-#[must_use]
-pub fn csv(table: &Table, rows: &[usize], offset: Option<i64>) -> String {
-    let mut out = String::from(if table.has_times() {
-        "number,device_time,utc"
-    } else {
-        "record"
-    });
-    for name in table.names() {
-        out.push(',');
-        quote(&mut out, &name);
-    }
-    out.push_str(",raw\n");
-    for row in rows.iter().filter_map(|at| table.rows.get(*at)) {
-        out.push_str(&row.number.to_string());
-        if table.has_times() {
-            out.push(',');
-            out.push_str(&row.time.map(iso).unwrap_or_default());
-            out.push(',');
-            if let (Some(time), Some(offset)) = (row.time, offset) {
-                out.push_str(&format!("{}Z", iso(time - offset)));
-            }
-        }
-        for cell in &row.cells {
-            out.push(',');
-            quote(&mut out, cell.as_ref().map_or("", |c| &c.text));
-        }
-        out.push(',');
-        quote(&mut out, &raw(table, row));
-        out.push('\n');
-    }
-    out
-}
-
-/// The words of the cells of a row; those of a file that is not described are the same in each.
-fn raw(table: &Table, row: &Row) -> String {
-    let cells = row.cells.iter().flatten().map(|c| c.raw.as_str());
-    if table.columns.is_empty() {
-        return cells.take(1).collect();
-    }
-    cells.collect::<Vec<_>>().join(" ")
-}
-
-/// Rows as a JSON list, one object a line.
-#[must_use]
-pub fn json(table: &Table, rows: &[usize], offset: Option<i64>) -> String {
-    let mut out = String::from("[");
-    let rows = rows.iter().filter_map(|at| table.rows.get(*at));
-    for (n, row) in rows.enumerate() {
-        out.push_str(if n == 0 { "\n" } else { ",\n" });
-        out.push_str(&format!(" {{\"number\":{}", row.number));
-        let time = |out: &mut String, name: &str, time: Option<String>| {
-            out.push_str(&format!(",\"{name}\":"));
-            match time {
-                Some(time) => quoted(out, &time),
-                None => out.push_str("null"),
-            }
-        };
-        if table.has_times() {
-            time(&mut out, "device_time", row.time.map(iso));
-            let utc = row
-                .time
-                .zip(offset)
-                .map(|(t, o)| format!("{}Z", iso(t - o)));
-            time(&mut out, "utc", utc);
-        }
-        let keys = ["hex", "unsigned", "signed", "characters"];
-        for (at, cell) in row.cells.iter().enumerate() {
-            let key = table.columns.get(at).map_or(keys[at.min(3)], |f| f.key);
-            time(&mut out, key, cell.as_ref().map(|c| c.text.clone()));
-            if let Some(number) = cell.as_ref().and_then(|c| c.number) {
-                out.push_str(&format!(",\"{key}_raw\":{number}"));
-            }
-        }
-        time(&mut out, "raw", Some(raw(table, row)));
-        out.push('}');
-    }
-    out.push_str("\n]\n");
-    out
 }

@@ -6,36 +6,38 @@ use shared::scale::Scale;
 use super::dossier::{Dossier, Reading};
 use crate::chart::{Axis, Chart, Kind, Point, Series, Shape, Stroke};
 
-/// Sub-function that counts all messages.
-const MESSAGES: u16 = 11;
-
-/// Errors whose rate is shown: their sub-function and name.
-const ERRORS: [(u16, &str, &str); 3] = [
-    (12, "crc", "CRC errors"),
-    (13, "exceptions", "Exceptions"),
-    (18, "overruns", "Overruns"),
+/// Errors whose rate is shown: their sub-function, key and name, and the sub-function that counts
+/// the messages among which they are. On a line with several units those are, for what only this
+/// unit does, the messages for it.
+const ERRORS: [(u16, &str, &str, u16); 4] = [
+    (12, "crc", "CRC errors", 11),
+    (13, "exceptions", "Exceptions", 14),
+    (17, "busy", "Busy", 14),
+    (18, "overruns", "Overruns", 11),
 ];
 
 /// Errors in percent of the messages between two readings, over time. `None` before two readings.
 #[must_use]
 pub fn chart(dossier: &Dossier) -> Option<Chart> {
-    let messages = dossier.counters.get(&MESSAGES)?;
-    if messages.len() < 2 {
+    let readings = |sub: &u16| dossier.counters.get(sub).map_or(&[][..], Vec::as_slice);
+    if readings(&11).len() < 2 {
         return None;
     }
-    let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted];
+    let strokes = [
+        Stroke::Solid,
+        Stroke::Dashed,
+        Stroke::DashDot,
+        Stroke::Dotted,
+    ];
     let series = ERRORS
         .iter()
         .zip(strokes)
-        .map(|((sub, key, label), stroke)| {
-            let errors = dossier.counters.get(sub).map_or(&[][..], Vec::as_slice);
-            Series {
-                key: (*key).to_owned(),
-                label: (*label).to_owned(),
-                shape: Shape::Step,
-                stroke,
-                points: points(dossier, messages, errors),
-            }
+        .map(|((sub, key, label, among), stroke)| Series {
+            key: (*key).to_owned(),
+            label: (*label).to_owned(),
+            shape: Shape::Step,
+            stroke,
+            points: points(dossier, readings(among), readings(sub)),
         });
     Some(Chart {
         key: "rates".to_owned(),
@@ -49,7 +51,9 @@ pub fn chart(dossier: &Dossier) -> Option<Chart> {
         series: series.collect(),
         bands: Vec::new(),
         notes: vec![
-            "Counters of FC 08; they go round at 65536 and begin at 0 with power up (reading E60)."
+            "Counters of FC 08; they go round at 65536 and begin at 0 with power up (reading E60). \
+             CRC errors and overruns are of all messages (11), exceptions and busy of those for \
+             this device (14)."
                 .to_owned(),
         ],
     })
@@ -118,5 +122,11 @@ mod tests {
         assert_eq!((crc[1].y, crc[1].note.as_str()), (Some(0.0), "0 of 100"));
         assert_eq!((crc[0].from, crc[0].to, crc[1].to), (0.0, 5.0, 10.0));
         assert!(chart.series[1].points.is_empty(), "not read, not zero");
+        // Of 1000 messages on the line 50 were for this unit, and one of those was refused: 2 %.
+        for (sub, count, at) in [(13, 0, 0), (14, 100, 0), (13, 1, 5), (14, 150, 5)] {
+            read(&mut dossier, sub, count, at * 1_000_000);
+        }
+        let refused = &super::chart(&dossier).unwrap().series[1].points[0];
+        assert_eq!((refused.y, refused.note.as_str()), (Some(2.0), "1 of 50"));
     }
 }

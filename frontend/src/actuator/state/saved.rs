@@ -1,6 +1,7 @@
 //! A device as a file, and back.
 
 use shared::address::{Address, Table};
+use shared::capture::Micros;
 use shared::device::Device;
 use shared::icon3000::snapshot::{Failure as Had, FileProblem, Part, parse};
 use shared::icon3000::{Snapshot, Span};
@@ -9,7 +10,9 @@ use shared::proto::{Block, IconStep, Outcome};
 use shared::value::Rfc3339;
 
 use super::dossier::{Answer, Dossier, Reading, Record};
+use super::wanted::Wanted;
 use crate::chart::time::Civil;
+use crate::format::count;
 
 /// What a file says beside the device itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,13 +39,15 @@ pub fn snapshot(dossier: &Dossier, now: i64) -> Option<Snapshot> {
     let mut snapshot = Snapshot::new(model(dossier.device)?, dossier.unit, &dossier.tag);
     snapshot.tool = concat!("valvescope ", env!("CARGO_PKG_VERSION"), ", page").to_owned();
     snapshot.taken = Rfc3339(oldest(dossier).unwrap_or(now)).to_string();
+    // What is read on the page may be hours apart, and the time of the clock counts.
+    let clock = clock(dossier).and_then(|at| dossier.image.cell(Table::Holding, at));
+    if let Some(cell) = clock {
+        snapshot.clock_read = Rfc3339(dossier.wall(cell.at.get())).to_string();
+    }
     for (table, address, cell) in dossier.image.iter() {
-        snapshot.image.set(
-            table,
-            address,
-            cell.word,
-            shared::capture::Micros::default(),
-        );
+        snapshot
+            .image
+            .set(table, address, cell.word, Micros::default());
     }
     snapshot.identity = dossier.identity.as_ref().map(|a| a.pdu.clone());
     let counters = dossier.counters.keys();
@@ -50,7 +55,7 @@ pub fn snapshot(dossier: &Dossier, now: i64) -> Option<Snapshot> {
         .filter_map(|sub| Some((*sub, dossier.count(*sub)?.count)))
         .collect();
     snapshot.files = dossier.all_files();
-    for failure in dossier.failed.values() {
+    for failure in dossier.failed.values().filter(|f| dossier.has(f.step)) {
         let part = match failure.step {
             IconStep::Block(block) => Part::Block(
                 Table::from(block.table),
@@ -67,8 +72,32 @@ pub fn snapshot(dossier: &Dossier, now: i64) -> Option<Snapshot> {
     Some(snapshot)
 }
 
+/// The register that holds the minutes and seconds of a device's clock.
+fn clock(dossier: &Dossier) -> Option<Address> {
+    let (start, count) = dossier.clock();
+    Address::new(start).checked_add(count - 1)
+}
+
+/// What a read of the whole device would still ask for, in words; empty if nothing.
+#[must_use]
+pub fn gaps(dossier: &Dossier) -> String {
+    let mut words = Vec::new();
+    let missing = Wanted::everything(dossier).missing(dossier, 0).len();
+    if missing > 0 {
+        let missing = count(u64::try_from(missing).unwrap_or(0), "part");
+        words.push(format!("{missing} not read"));
+    }
+    let failed = dossier.failed.values().filter(|f| dossier.has(f.step));
+    let failed = u64::try_from(failed.count()).unwrap_or(0);
+    if failed > 0 {
+        words.push(format!("{} refused or not answered", count(failed, "part")));
+    }
+    words.join(", ")
+}
+
 /// When the oldest of what a device says was read, in seconds since 1970.
-fn oldest(dossier: &Dossier) -> Option<i64> {
+#[must_use]
+pub fn oldest(dossier: &Dossier) -> Option<i64> {
     let registers = dossier.image.iter().map(|(_, _, cell)| cell.at.get());
     let records = dossier.files.values().flatten().flatten().map(|r| r.at);
     let oldest = registers.chain(records).min()?;
@@ -84,6 +113,17 @@ pub fn dossier(snapshot: &Snapshot, name: &str) -> Dossier {
     let taken = seconds(&snapshot.taken).and_then(|s| u64::try_from(s).ok());
     dossier.start_wall_ms = taken.unwrap_or(0).saturating_mul(1000);
     dossier.image = snapshot.image.clone();
+    let later = seconds(&snapshot.clock_read).zip(seconds(&snapshot.taken));
+    let later = later.and_then(|(clock, taken)| u64::try_from(clock - taken).ok());
+    if let (Some(later), Some(last)) = (later, clock(&dossier)) {
+        for at in (0..4).filter_map(|n| last.get().checked_sub(n)) {
+            let at = Address::new(at);
+            if let Some(cell) = dossier.image.cell(Table::Holding, at).copied() {
+                let then = Micros::new(later.saturating_mul(1_000_000));
+                dossier.image.set(Table::Holding, at, cell.word, then);
+            }
+        }
+    }
     dossier.identity = snapshot.identity.clone().map(|pdu| Answer { pdu, at: 0 });
     for (&sub, &count) in &snapshot.counters {
         dossier.counters.insert(sub, vec![Reading { count, at: 0 }]);
@@ -116,7 +156,7 @@ pub fn dossier(snapshot: &Snapshot, name: &str) -> Dossier {
             Part::Counter(sub_function) => IconStep::Diagnostic { sub_function },
         };
         // Files do not tell which of the ways it failed; the words do.
-        dossier.fail(step, Outcome::Exception, &failure.why, 0);
+        dossier.fail(step, Outcome::Exception, 0, &failure.why, 0);
     }
     dossier
 }
@@ -180,7 +220,7 @@ pub(crate) mod tests {
             start: 0,
             count: 110,
         };
-        dossier.fail(file, Outcome::Exception, "illegal data address", 4);
+        dossier.fail(file, Outcome::Exception, 2, "illegal data address", 4);
         dossier
     }
 
@@ -202,6 +242,34 @@ pub(crate) mod tests {
         let again = snapshot(&after, 0).unwrap();
         assert!(diff(&saved, &again).is_empty());
         assert_eq!(again.to_text(), saved.to_text());
+    }
+
+    /// HR 3023 to 3026 say 2025-12-06 05:46:52, read 12 s after the oldest part, when it was
+    /// 05:46:50 UTC: 2 s ahead, in the file too.
+    #[test]
+    fn the_clock_keeps_its_own_time() {
+        let mut before = device();
+        put_registers(
+            &mut before,
+            3023,
+            &[0x0612, 0x2025, 0x0005, 0x4652],
+            12_000_000,
+        );
+        before.start_wall_ms = 1_764_999_998_000;
+        assert_eq!(before.clock_offset(), Some(2));
+        let saved = snapshot(&before, 0).unwrap();
+        assert_eq!(saved.taken, "2025-12-06T05:46:38Z");
+        assert_eq!(saved.clock_read, "2025-12-06T05:46:50Z");
+        let (after, _) = open("xv.json", &saved.to_text()).unwrap();
+        assert_eq!(after.clock_offset(), Some(2));
+        assert_eq!(snapshot(&after, 0).unwrap().to_text(), saved.to_text());
+    }
+
+    #[test]
+    fn gaps_are_told_before_it_is_saved() {
+        let said = gaps(&device());
+        assert!(said.contains("parts not read, 1 part refused"), "{said}");
+        assert_eq!(gaps(&Dossier::new("x", Device::None)), "7 parts not read");
     }
 
     #[test]

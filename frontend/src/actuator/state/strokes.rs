@@ -1,8 +1,7 @@
 //! Partial strokes (PST) and emergency strokes (EFS): time over position, limits, the result in
 //! words.
 
-use shared::address::{Address, Table};
-use shared::icon3000::stroke::Stroke as Told;
+use shared::icon3000::stroke::{Stroke as Told, limits as told_limits};
 use shared::icon3000::{Item, Log};
 use shared::scale::Scale;
 use shared::value::{Quality, Value};
@@ -196,36 +195,23 @@ pub struct Limits {
 /// are taken as relative to the reference, OV-TR as percent of the stroke.
 #[must_use]
 pub fn limits(dossier: &Dossier, reference: Option<&Stroke>) -> Limits {
-    let register = |address: u16| {
-        let cell = dossier.image.cell(Table::Holding, Address::new(address))?;
-        Some(i64::from(cell.word))
-    };
-    let of = |key: &str| reference?.get(key)?.number();
     let mut limits = Limits::default();
-    for (address, key, name, back) in [
-        (3616, "t_pst", "T-PST", false),
-        (3618, "t_ret", "T-RET", true),
-    ] {
-        let (Some(percent), Some(base)) = (register(address), of(key)) else {
+    for limit in told_limits(&dossier.image, reference.map(|r| &r.told)) {
+        let (Some(percent), Some(tenths)) = (limit.percent, limit.presumed_tenths) else {
             continue;
         };
-        let tenths = percent * base / 100;
+        let tenths = i64::from(tenths);
+        let (slot, unit, of) = match limit.key {
+            "t_pst" => (&mut limits.out, "s", "time of the reference"),
+            "t_ret" => (&mut limits.back, "s", "time of the reference"),
+            _ => (&mut limits.beyond, "% beyond the travel", "stroke"),
+        };
+        *slot = Some(tenths);
         limits.words.push(format!(
-            "{name} limit {} s: {percent} % (HR {address}) of {} s of the reference, presumed \
-             (reading E89)",
+            "{} {} {unit}: {percent} % (HR {}) of the {of}, presumed (reading E89)",
+            limit.label,
             Scale::TENTH.apply(tenths),
-            Scale::TENTH.apply(base)
-        ));
-        if back {
-            limits.back = Some(tenths);
-        } else {
-            limits.out = Some(tenths);
-        }
-    }
-    if let Some(percent) = register(3619) {
-        limits.beyond = Some(percent * 10);
-        limits.words.push(format!(
-            "OV-TR limit {percent} % of the stroke beyond the travel (HR 3619), presumed (reading E89)"
+            limit.register
         ));
     }
     limits

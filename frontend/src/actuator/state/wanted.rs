@@ -2,6 +2,7 @@
 
 use shared::address::{Address, Table};
 use shared::icon3000::Span;
+use shared::icon3000::plan::Probe;
 use shared::map::plan::plan;
 use shared::map::row::Row;
 use shared::proto::{Block, IconStep, MAX_ICON_STEPS};
@@ -11,9 +12,8 @@ use super::dossier::{Dossier, Subject};
 /// Sub-functions of FC 08 that read a counter, in the order of the manual's table 19.
 pub const COUNTERS: [u16; 6] = [11, 12, 13, 14, 17, 18];
 
-/// The file whose records the manual does not describe, and how many of them are asked for: as many
-/// as one answer holds (readings E69, E80).
-pub const LIMITS: (u16, u16) = (5, 121);
+/// The file whose records the manual does not describe, nor how many there are (reading E69).
+pub const LIMITS: u16 = 5;
 
 /// Things to be read, all of them or only those that are missing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -22,47 +22,44 @@ pub struct Wanted {
     pub what: String,
     /// Blocks of registers and bits.
     pub blocks: Vec<Block>,
-    /// Files, by number.
+    /// Files, by number; none of them on a model that has no files.
     pub files: Vec<u16>,
+    /// Runs of files by their first, each with its reference and as many as the device says it has
+    /// stored.
+    pub runs: Vec<u16>,
     /// The answer to FC 17.
     pub identity: bool,
     /// Counters of FC 08.
     pub counters: Vec<u16>,
-    /// True for every file besides: as many curves as the device says it has stored.
-    pub whole: bool,
+    /// True for what is read again and again without being asked for: it gives way to all else.
+    pub quiet: bool,
 }
 
 /// Files that every device has: logs, recorders, cards.
-const ALWAYS: [u16; 11] = [2, 3, 4, 5000, 5100, 5200, 5300, 5301, 5302, 5303, 5304];
-
-/// Where curves begin, the register that counts them, and how many there can be.
-const CURVES: [(u16, u16, u16); 4] = [
-    (1000, 3511, 100),
-    (2000, 3512, 100),
-    (3000, 3513, 16),
-    (3500, 3514, 16),
+const ALWAYS: [u16; 12] = [
+    2, 3, 4, LIMITS, 5000, 5100, 5200, 5300, 5301, 5302, 5303, 5304,
 ];
 
-/// Every file of a device, as far as it has told how many there are.
-fn every_file(dossier: &Dossier) -> Vec<u16> {
-    if !dossier.device.implements(20) || dossier.device.map().is_none() {
-        return Vec::new();
-    }
-    let mut files = ALWAYS.to_vec();
-    for (first, counter, most) in CURVES {
-        let cell = dossier.image.cell(Table::Holding, Address::new(counter));
-        let stored = cell.map_or(0, |c| c.word.min(most));
-        files.extend(first..=first.saturating_add(stored));
-    }
-    files
+/// Where curves begin, and how many there can be. HR 3511 to 3514 count them in this order.
+const RUNS: [(u16, u16); 4] = [(1000, 100), (2000, 100), (3000, 16), (3500, 16)];
+
+/// How many curves the device has stored, by HR 3511 to 3514: opening, closing, PST, EFS.
+#[must_use]
+pub fn stored(dossier: &Dossier) -> [Option<u16>; 4] {
+    let mut at = 3511..;
+    RUNS.map(|(_, most)| {
+        let address = Address::new(at.next().unwrap_or(3511));
+        let cell = dossier.image.cell(Table::Holding, address)?;
+        Some(cell.word.min(most))
+    })
 }
 
 impl Wanted {
     /// Rows of the map in the fewest requests.
     #[must_use]
-    pub fn rows(mut self, rows: impl Iterator<Item = &'static Row> + Clone) -> Self {
+    pub fn rows(mut self, rows: &[&'static Row]) -> Self {
         for table in Table::ALL {
-            let reads = plan(table, rows.clone());
+            let reads = plan(table, rows.iter().copied());
             self.blocks.extend(reads.into_iter().map(Block::from));
         }
         self
@@ -70,20 +67,11 @@ impl Wanted {
 
     /// Holding registers by address, with their number.
     #[must_use]
-    pub fn registers(mut self, dossier: &Dossier, ranges: &[(u16, u16)]) -> Self {
-        let Some(map) = dossier.device.map() else {
-            return self;
-        };
-        let rows = map.rows_of(Table::Holding).iter().copied();
-        let rows = rows.filter(|row| {
-            let at = row.address.get();
-            ranges
-                .iter()
-                .any(|(start, count)| at >= *start && at < start.saturating_add(*count))
-        });
-        let reads = plan(Table::Holding, rows);
-        self.blocks.extend(reads.into_iter().map(Block::from));
-        self
+    pub fn registers(self, dossier: &Dossier, ranges: &[(u16, u16)]) -> Self {
+        let maps = dossier.device.map().into_iter();
+        let rows = maps.flat_map(|map| map.rows_of(Table::Holding)).copied();
+        let rows: Vec<_> = rows.filter(|row| within(row, ranges)).collect();
+        self.rows(&rows)
     }
 
     /// The whole device.
@@ -94,10 +82,11 @@ impl Wanted {
             what: "the whole device".to_owned(),
             identity: true,
             counters: COUNTERS.to_vec(),
-            whole: true,
+            files: ALWAYS.to_vec(),
+            runs: RUNS.map(|r| r.0).to_vec(),
             ..Self::default()
         }
-        .rows(rows.iter().copied())
+        .rows(rows)
     }
 
     /// What is missing, or older than `since` (microseconds), in the order in which it is read. A
@@ -126,12 +115,7 @@ impl Wanted {
                 steps.push(IconStep::Diagnostic { sub_function });
             }
         }
-        let every = if self.whole {
-            every_file(dossier)
-        } else {
-            Vec::new()
-        };
-        for &file in self.files.iter().chain(&every) {
+        for file in self.every_file(dossier) {
             if !gave_up(dossier, Subject::File(file), since) {
                 steps.extend(rest(dossier, file, since));
             }
@@ -139,10 +123,34 @@ impl Wanted {
         steps.truncate(MAX_ICON_STEPS);
         steps
     }
+
+    /// Every file that is wanted, as far as the device has told how many there are.
+    fn every_file(&self, dossier: &Dossier) -> Vec<u16> {
+        if !dossier.device.implements(20) || dossier.device.map().is_none() {
+            return Vec::new();
+        }
+        let mut files = self.files.clone();
+        for ((first, _), stored) in RUNS.into_iter().zip(stored(dossier)) {
+            if self.runs.contains(&first) {
+                // The latest is there as a rule, even before its number is known.
+                files.extend(first..=first.saturating_add(stored.unwrap_or(1)));
+            }
+        }
+        files
+    }
+}
+
+/// True if a row begins in one of these ranges: first address and number.
+#[must_use]
+pub fn within(row: &Row, ranges: &[(u16, u16)]) -> bool {
+    let at = row.address.get();
+    let inside = |(start, count): &(u16, u16)| at >= *start && at < start.saturating_add(*count);
+    ranges.iter().any(inside)
 }
 
 fn gave_up(dossier: &Dossier, subject: Subject, since: u64) -> bool {
-    dossier.failed.get(&subject).is_some_and(|f| f.at >= since)
+    let failure = dossier.failed.get(&subject);
+    failure.is_some_and(|f| f.at >= since && !f.again)
 }
 
 fn is_old(dossier: &Dossier, block: Block, since: u64) -> bool {
@@ -158,20 +166,24 @@ fn is_old(dossier: &Dossier, block: Block, since: u64) -> bool {
 
 /// The parts of a file that are to be read: first its head, then what the head announces.
 fn rest(dossier: &Dossier, file: u16, since: u64) -> Vec<IconStep> {
-    let fresh = dossier.records(file, since);
-    let spans = if file == LIMITS.0 {
-        let missing = (0..LIMITS.1).find(|at| fresh.get(*at).is_none());
-        let count = |start| LIMITS.1.saturating_sub(start);
-        missing.map_or_else(Vec::new, |start| vec![Span::new(file, start, count(start))])
+    let spans = if file == LIMITS {
+        let known = dossier.probe.filter(|(_, at)| *at >= since);
+        let probe = known.map_or_else(|| Probe::new(file, 0), |(probe, _)| probe);
+        probe.next().into_iter().collect()
     } else {
-        fresh.missing(file)
+        dossier.records(file, since).missing(file)
     };
-    let step = |span: Span| IconStep::File {
+    spans.into_iter().map(step_of).collect()
+}
+
+/// The step that reads a stretch of a file.
+#[must_use]
+pub const fn step_of(span: Span) -> IconStep {
+    IconStep::File {
         file: span.file,
         start: span.start,
         count: span.count,
-    };
-    spans.into_iter().map(step).collect()
+    }
 }
 
 #[cfg(test)]
@@ -238,11 +250,91 @@ mod tests {
         let all = wanted.missing(&dossier, 5);
         assert_eq!(all.len(), 4);
         assert_eq!(all.last(), Some(&file(1000, 0, 108)));
-        dossier.fail(file(3500, 0, 110), Outcome::Exception, "illegal address", 6);
-        dossier.fail(IconStep::Identity, Outcome::Silence, "no answer", 4);
+        let refused = |dossier: &mut Dossier, at| {
+            let step = file(3500, 0, 110);
+            dossier.fail(step, Outcome::Exception, 2, "illegal address", at);
+        };
+        refused(&mut dossier, 6);
+        dossier.fail(IconStep::Identity, Outcome::Silence, 0, "no answer", 4);
         let left = wanted.missing(&dossier, 5);
         assert_eq!(left.len(), 3, "an older failure counts no more: {left:?}");
         assert!(!left.contains(&file(3500, 0, 110)));
+        // Going on tries it once more; until that is answered it stays on the list.
+        for failure in dossier.failed.values_mut() {
+            failure.again = true;
+        }
+        assert!(wanted.missing(&dossier, 5).contains(&file(3500, 0, 110)));
+        assert_eq!(dossier.failed.len(), 2);
+        refused(&mut dossier, 9);
+        assert!(!wanted.missing(&dossier, 5).contains(&file(3500, 0, 110)));
+    }
+
+    /// Reading E69: nothing tells the length of file 5. Of 64 records, 121 are refused, then 60
+    /// answered, and of the four that are left 3 and 1; a further one is refused.
+    #[test]
+    fn file_5_is_found_by_halves() {
+        let wanted = Wanted {
+            files: vec![5],
+            ..Wanted::default()
+        };
+        let mut dossier = dossier();
+        let mut asked = Vec::new();
+        while let [IconStep::File { start, count, .. }] = wanted.missing(&dossier, 3)[..] {
+            asked.push((start, count));
+            assert!(asked.len() < 40, "{asked:?}");
+            if start + count <= 64 {
+                put(&mut dossier, 5, start, &vec![7; count.into()], 9);
+            } else {
+                let step = file(5, start, count);
+                dossier.fail(step, Outcome::Exception, 2, "illegal data address", 9);
+            }
+        }
+        assert_eq!(asked[..3], [(0, 121), (0, 60), (60, 60)]);
+        assert_eq!(asked.last(), Some(&(64, 1)));
+        assert_eq!(dossier.records(5, 0).len(), 64);
+        assert!(dossier.failed.is_empty(), "its end is no failure");
+        assert_eq!(wanted.missing(&dossier, 10), [file(5, 0, 121)], "all anew");
+    }
+
+    /// A device without the file refuses even its first record, and that is said.
+    #[test]
+    fn no_file_5_is_a_failure() {
+        let wanted = Wanted {
+            files: vec![5],
+            ..Wanted::default()
+        };
+        let mut dossier = dossier();
+        for count in [121, 60, 30, 15, 7, 3, 1] {
+            assert_eq!(wanted.missing(&dossier, 0), [file(5, 0, count)]);
+            let step = file(5, 0, count);
+            dossier.fail(step, Outcome::Exception, 2, "illegal data address", 9);
+        }
+        assert_eq!(dossier.failed.len(), 1);
+        assert_eq!(wanted.missing(&dossier, 0), []);
+    }
+
+    /// HR 3513 says that two partial strokes are stored: the reference and those two are read.
+    #[test]
+    fn curves_are_read_as_many_as_are_stored() {
+        let mut dossier = dossier();
+        let wanted = Wanted {
+            runs: vec![3000],
+            ..Wanted::default()
+        };
+        let files = |dossier: &Dossier| -> Vec<u16> {
+            let steps = wanted.missing(dossier, 0).into_iter();
+            steps
+                .filter_map(|s| match s {
+                    IconStep::File { file, .. } => Some(file),
+                    _ => None,
+                })
+                .collect()
+        };
+        assert_eq!(files(&dossier), [3000, 3001]);
+        assert!(dossier.absorb(&[3, 0x0D, 0xB9, 0, 1], &[3, 2, 0, 2], 1));
+        assert_eq!(files(&dossier), [3000, 3001, 3002]);
+        dossier.device = Device::Icon3000;
+        assert_eq!(files(&dossier), [0; 0], "there are no files before the v2");
     }
 
     #[test]

@@ -28,12 +28,14 @@
 //! | `table`, `start`, `words` | registers from address `start`, four hexadecimal digits each |
 //! | `table`, `start`, `bits` | coils or discrete inputs from address `start`, `0` or `1` each |
 //! | `hole`, `start`, `count`, `why` | addresses that the map has and the snapshot has not |
+//! | `hole` `file`, `file`, `start`, `count`, `why` | records that the file should have and the snapshot has not |
 //! | `identity` | the response PDU of function 17 |
 //! | `counter`, `value` | a counter of function 08 by its sub-function |
 //! | `file`, `start`, `words` | records of a file, four hexadecimal digits each |
 //! | `failed` and its place, `why` | `block` (`table`, `start`, `count`), `identity`, `counter` (`sub`) or `file` (`file`, `start`, `count`) that was asked for and not had |
 //!
-//! `took_ms` is `null` where it is not known. The hash is the SHA-256 of the bytes before the line
+//! `took_ms` is `null` where it is not known. After it `clock_read` may follow: when the clock of
+//! the device was read, where that was another time than `taken`. The hash is the SHA-256 of the bytes before the line
 //! that holds it, as this module writes them; a reader writes what it understood once more and
 //! compares, so that other white space does no harm.
 
@@ -43,6 +45,7 @@ use sha2::{Digest, Sha256};
 
 use super::{Failure, Part, Snapshot};
 use crate::address::Table;
+use crate::icon3000::plan::Span;
 use crate::json::Quoted;
 use crate::render::hex;
 
@@ -85,6 +88,9 @@ impl Snapshot {
             Some(ms) => write!(out, "{ms}"),
             None => out.write_str("null"),
         };
+        if !self.clock_read.is_empty() {
+            let _ = write!(out, ",\n\"clock_read\":{}", Quoted(&self.clock_read));
+        }
         out.push_str(",\n\"parts\":[");
         let mut parts = Parts { out, first: true };
         self.tables(&mut parts);
@@ -96,6 +102,12 @@ impl Snapshot {
                 hole.start,
                 hole.count,
                 Quoted(&hole.why)
+            );
+        }
+        for Span { file, start, count } in self.file_holes() {
+            let _ = write!(
+                parts.next(),
+                r#"{{"hole":"file","file":{file},"start":{start},"count":{count},"why":"not read"}}"#
             );
         }
         if let Some(pdu) = &self.identity {

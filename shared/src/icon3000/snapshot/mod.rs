@@ -15,6 +15,7 @@ mod tests;
 use std::collections::BTreeMap;
 
 use super::identity::Report;
+use super::model::{FILES, Numbering};
 use super::plan::Span;
 use super::records::Files;
 use crate::address::{Address, Table};
@@ -41,6 +42,9 @@ pub struct Snapshot {
     pub taken: String,
     /// How long the read took, in milliseconds; `None` if that is not known.
     pub took_ms: Option<u64>,
+    /// When the clock of the device was read, in words of RFC 3339; empty if that is not known, as
+    /// in snapshots whose parts were all read one after the other.
+    pub clock_read: String,
     /// Coils, inputs and registers.
     pub image: Image,
     /// The response PDU of function 17.
@@ -117,6 +121,7 @@ impl Snapshot {
             tool: String::new(),
             taken: String::new(),
             took_ms: None,
+            clock_read: String::new(),
             image: Image::new(),
             identity: None,
             counters: BTreeMap::new(),
@@ -192,6 +197,38 @@ impl Snapshot {
                         count: 1,
                         why: why.to_owned(),
                     }),
+                }
+            }
+        }
+        holes
+    }
+
+    /// Stretches of files that the model has and this snapshot has not, by number; what failed is
+    /// not among them. Of curves those count that HR 3511 to 3514 say are stored.
+    #[must_use]
+    pub fn file_holes(&self) -> Vec<Span> {
+        let mut holes = Vec::new();
+        if !self.model.map().implements(20) {
+            return holes;
+        }
+        let failed = |number| {
+            let mut failures = self.failures.iter();
+            failures.any(|f| matches!(f.part, Part::File(span) if span.file == number))
+        };
+        let mut counters = 3511..;
+        for file in &FILES {
+            let Some(layout) = file.layout else { continue };
+            let (mut first, mut last) = (file.first, file.last);
+            if file.numbering == Numbering::Curves {
+                let address = Address::new(counters.next().unwrap_or(0));
+                let stored = self.image.cell(Table::Holding, address);
+                first = first.saturating_add(1);
+                last = last.min(file.first.saturating_add(stored.map_or(0, |c| c.word)));
+            }
+            for number in (first..=last).filter(|n| !failed(*n)) {
+                match self.files.get(number) {
+                    Some(records) => holes.extend(records.missing(number)),
+                    None => holes.push(Span::new(number, 0, layout.head_records)),
                 }
             }
         }

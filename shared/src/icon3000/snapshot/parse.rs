@@ -222,6 +222,7 @@ fn build(head: &Members, parts: &[(usize, Members)], problems: &mut Problems) ->
     snapshot.tool = text("tool").to_owned();
     snapshot.taken = text("taken").to_owned();
     snapshot.took_ms = get(head, "took_ms").and_then(Scalar::number);
+    snapshot.clock_read = text("clock_read").to_owned();
     for (at, (line, part)) in (1_usize..).zip(parts) {
         if let Err(why) = take(&mut snapshot, part) {
             let place = if *line > 0 {

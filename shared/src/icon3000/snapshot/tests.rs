@@ -64,6 +64,8 @@ fn the_file_is_as_documented() {
         "{\"hole\":\"holding\",\"start\":4,\"count\":3,\"why\":\"reserved\"},",
         "{\"hole\":\"holding\",\"start\":46,\"count\":2954,\"why\":\"reserved\"},",
         "{\"hole\":\"holding\",\"start\":3000,\"count\":4,\"why\":\"not read\"},",
+        "{\"hole\":\"file\",\"file\":3,\"start\":0,\"count\":1,\"why\":\"not read\"},",
+        "{\"hole\":\"file\",\"file\":5300,\"start\":0,\"count\":32,\"why\":\"not read\"},",
         "{\"counter\":11,\"value\":1207},",
         "{\"file\":2,\"start\":0,\"words\":\"000200320009000600310008000B\"},",
         "{\"failed\":\"file\",\"file\":1002,\"start\":0,\"count\":108,\"why\":\"illegal data address\"}",
@@ -99,6 +101,35 @@ fn a_file_comes_back_as_it_was() {
     assert_eq!(problems, []);
     assert_eq!(back.as_ref(), Some(&s));
     assert!(diff(&s, &back.unwrap()).is_empty());
+}
+
+/// HR 3511 says that two opening curves are stored (section 8.11.4: 216 bytes, 108 records); the
+/// latest was read, the one before not, and of three warnings only the first (section 8.11.2).
+#[test]
+fn files_that_were_not_read_are_holes() {
+    let mut s = Snapshot::new(Model::Icon3000v2, 1, "XV");
+    block(&mut s, 3, 3511, &[2, 0, 0, 0]);
+    file(&mut s, 1001, &[9; 108]);
+    file(&mut s, 3, &[3, 0, 50, 6]);
+    let holes = s.file_holes();
+    assert!(holes.contains(&Span::new(1002, 0, 108)) && holes.contains(&Span::new(3, 4, 6)));
+    let curve = |n: &Span| (1000..=1100).contains(&n.file) || n.file == 2001;
+    assert_eq!(holes.iter().filter(|n| curve(n)).count(), 1, "{holes:?}");
+    let why = "no answer".to_owned();
+    let part = Part::File(Span::new(1002, 0, 108));
+    s.failures.push(Failure { part, why });
+    assert!(!s.file_holes().iter().any(curve), "it failed, and says so");
+    let old = Snapshot::new(Model::Icon3000, 1, "XV");
+    assert_eq!(old.file_holes(), [], "there are no files before the v2");
+}
+
+#[test]
+fn the_time_of_the_clock_comes_back() {
+    let mut s = small();
+    s.clock_read = "2026-11-26T23:51:00Z".to_owned();
+    let text = s.to_text();
+    assert!(text.contains("\"took_ms\":8120,\n\"clock_read\":\"2026-11-26T23:51:00Z\",\n"));
+    assert_eq!(parse(text.as_bytes()), (Some(s), Vec::new()));
 }
 
 #[test]

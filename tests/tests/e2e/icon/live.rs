@@ -30,7 +30,7 @@ async fn read(page: &Page, tab: &str) {
 }
 
 /// Waits until nothing is being read any more.
-async fn done(page: &Page) {
+pub async fn done(page: &Page) {
     let end = Instant::now() + Duration::from_secs(40);
     loop {
         let text = page.text("[data-testid=icon-job]").await;

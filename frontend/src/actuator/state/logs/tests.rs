@@ -127,3 +127,38 @@ fn what_the_head_does_not_announce_is_left_out() {
     assert_eq!(table.rows.len(), 1);
     assert_eq!(table.problems.len(), 1, "{:?}", table.problems);
 }
+
+/// Before the ICON3000v2 the five latest alarms stand in registers: on an ICON3000 in HR 3090 and
+/// on, code, date and time of each (notes 2 and 3 of table 5). Code 0 is no entry.
+#[test]
+fn registers_make_a_table_without_files() {
+    let mut dossier = Dossier::new("XV", Device::Icon3000);
+    let table = Table::of(&dossier, 2);
+    assert_eq!((table.rows.len(), table.columns.len()), (0, 1));
+    let words = [
+        6, 0x2902, 0x2024, 0x0012, 0x3456, 12, 0x2802, 0x2024, 0x0003, 0x0405, 0, 0, 0, 0, 0,
+    ];
+    crate::actuator::markup::rows::tests::put(&mut dossier, 3090, &words, 1);
+    let table = Table::of(&dossier, 2);
+    assert_eq!(table.place, "HR 3090 to 3114");
+    let rows: Vec<_> = table.rows.iter().collect();
+    let [latest, before] = rows[..] else {
+        panic!("{rows:?}");
+    };
+    assert_eq!(stamp(latest.time.unwrap()), "2024-02-29 12:34:56");
+    assert_eq!(stamp(before.time.unwrap()), "2024-02-28 03:04:05");
+    assert_eq!(latest.cells[0].as_ref().unwrap().number, Some(6));
+    let text = &before.cells[0].as_ref().unwrap().text;
+    assert!(text.contains("Lost"), "{text}");
+    assert_eq!(table.matching(&Filter::default()), [0, 1]);
+    assert_eq!(logs_of(&dossier), [2, 3]);
+    let wanted = rows_of(&dossier);
+    assert_eq!((wanted.first(), wanted.last()), (Some(&3090), Some(&3138)));
+    dossier.device = Device::Icon3000v2;
+    assert_eq!((logs_of(&dossier).len(), rows_of(&dossier).len()), (5, 0));
+}
+
+fn rows_of(dossier: &Dossier) -> Vec<u16> {
+    let rows = rows(dossier).into_iter();
+    rows.map(|row| row.address.get()).collect()
+}
