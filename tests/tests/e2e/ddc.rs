@@ -2,6 +2,7 @@
 //! fault table and scan time without a network, as a person sees them.
 
 mod shapes;
+mod unit;
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -136,6 +136,22 @@ async fn torque_signatures_are_drawn_as_they_were_read() {
         }
     }
     page.look("icon-curves-all").await;
+    // As a picture of its own, and nearer.
+    page.click("[data-testid=chart-save-svg]").await;
+    let svg = page.saved(2).await;
+    assert!(
+        svg.starts_with("<svg") && svg.contains("xmlns"),
+        "{svg:.200}"
+    );
+    let whole = page.drawn("torque", "file-1000").await;
+    page.click("[data-testid=chart-in]").await;
+    page.wait_until(
+        "(([low, high]) => high - low < 100)
+         (document.querySelector('[data-chart=torque] [data-testid=chart-svg]').dataset.x
+           .split(' ').map(Number))",
+    )
+    .await;
+    assert!(page.drawn("torque", "file-1000").await.len() <= whole.len());
     page.assert_clean().await;
 }
 
@@ -172,6 +188,13 @@ async fn strokes_and_trends_are_drawn_as_they_were_read() {
         "{result}: {verdict}"
     );
     page.look("icon-pst").await;
+    page.click("details:has([data-testid=stroke-raw]) summary")
+        .await;
+    page.until(
+        "[data-testid=stroke-raw]",
+        "/[0-9A-F]{4}/.test($.innerText)",
+    )
+    .await;
     // An emergency stroke: tenths of a second to each percent of travel (table 40).
     go(&page, "curves?show=efs").await;
     page.wait_for("[data-chart=efs] [data-testid=chart-svg]")
@@ -236,6 +259,31 @@ async fn logs_are_tables() {
         .expect("a count");
     page.wait_until(&format!("{first} == '{stored}'")).await;
     page.keep_saved().await;
+    // Filtered by text and by code: only rows that have it are left.
+    page.enter("[data-testid=log-filter]", "torque").await;
+    page.wait_until(
+        "(rows => rows.length > 0 && rows.every(r => /torque/i.test(r.innerText)))
+         ([...document.querySelectorAll('[data-testid=log-row]')])",
+    )
+    .await;
+    page.enter("[data-testid=log-filter]", "").await;
+    let code = words_code(snapshot.files.get(2).expect("a log"));
+    page.enter("[data-testid=log-code]", &code.to_string())
+        .await;
+    page.wait_until(&format!(
+        "(rows => rows.length > 0 && rows.every(r => r.innerText.includes('({code})')))
+         ([...document.querySelectorAll('[data-testid=log-row]')])"
+    ))
+    .await;
+    page.enter("[data-testid=log-code]", "").await;
+    // Raw words in place of names.
+    page.click("[data-testid=log-raw]").await;
+    page.until(
+        "[data-testid=log-row]",
+        &format!("/[0-9A-F]{{4}}/.test($.innerText) && !$.innerText.includes('({code})')"),
+    )
+    .await;
+    page.click("[data-testid=log-raw]").await;
     page.click("[data-testid=log-csv]").await;
     let csv = page.saved(1).await;
     assert_table(&csv, snapshot.files.get(2).expect("a log"), true);
@@ -255,6 +303,11 @@ async fn logs_are_tables() {
         .collect();
     assert_eq!(codes, wanted, "the oldest first on the screen");
     page.assert_clean().await;
+}
+
+/// The code of the first alarm of file 2.
+fn words_code(log: &shared::icon3000::Records) -> u16 {
+    log.get(3).expect("an alarm")
 }
 
 /// Holds that a saved table of alarms says what the words of file 2 say: how many, then for each the

@@ -150,6 +150,38 @@ async fn status_and_map_are_those_of_the_family() {
     page.assert_clean().await;
 }
 
+/// A CMA of the plant has an alarm and a map that gives it a category: the sign of NAMUR NE 107 on its
+/// overview, and the bit that it comes from.
+#[tokio::test]
+async fn a_mapped_alarm_has_its_category() {
+    let server = Server::start(&[]);
+    let page = open_device(&server, "FV-403", "overview").await;
+    page.until_within(
+        "[data-testid=hart-ne107]",
+        "$.querySelector('[role=img]') && !/not read|no category/i.test($.innerText)",
+        SLOW,
+    )
+    .await;
+    page.look("hart-mapped").await;
+    page.click("[data-testid=hart-tab][data-tab=status]").await;
+    page.wait_for("[data-testid=hart-bit][data-on='1']").await;
+    page.wait_for("[data-testid=hart-ne107]").await;
+    page.look("hart-mapped-status").await;
+    page.assert_clean().await;
+    for tag in ["FV-404", "FV-405"] {
+        let page = open_device(&server, tag, "overview").await;
+        page.until_within(
+            "[data-testid=hart-position]",
+            "/\\d/.test($.innerText)",
+            SLOW,
+        )
+        .await;
+        page.look(&format!("hart-{}", tag.to_ascii_lowercase()))
+            .await;
+        page.assert_clean().await;
+    }
+}
+
 /// A HART line: its frames are shown by the program, the line says who is on it, and a scan finds
 /// the devices. The list of devices tells their state.
 #[tokio::test]
@@ -160,6 +192,13 @@ async fn a_line_shows_its_frames_and_is_searched() {
     page.until_within(
         "[data-testid=device-row][data-tag=FV-401]",
         "/poll 0/.test($.textContent) && !/never/.test($.textContent)",
+        SLOW,
+    )
+    .await;
+    // Its position comes from command 3, which the list polls.
+    page.until_within(
+        "[data-testid=device-row][data-tag=FV-401]",
+        "/\\d+\\.\\d\\s*%/.test($.innerText)",
         SLOW,
     )
     .await;
@@ -264,6 +303,14 @@ async fn a_forced_mode_is_unmistakable() {
     page.until_within(none, "/not a number/.test($.innerText)", SLOW)
         .await;
     page.look("hart-forced").await;
+    for tab in ["setup", "variables", "traffic"] {
+        page.click(&format!("[data-testid=hart-tab][data-tab={tab}]"))
+            .await;
+        page.until("[data-testid=hart-forced]", "/digital/i.test($.innerText)")
+            .await;
+    }
+    page.click("[data-testid=hart-tab][data-tab=overview]")
+        .await;
 
     // A page that nobody looks at asks for nothing: the last answer grows old. Then it goes on.
     let age = "Number((/([\\d.]+) s ago/.exec($.innerText) ?? [])[1])";
@@ -315,6 +362,14 @@ async fn a_gateway_is_read() {
     )
     .await;
     page.look("hart-gateway").await;
+    // It does not implement command 523, and that is what the screen of the map says.
+    page.click("[data-testid=hart-tab][data-tab=map]").await;
+    page.until_within(
+        "[data-testid=hart-map-page], [data-testid=hart-map-view]",
+        "/not implemented/i.test($.innerText)",
+        SLOW,
+    )
+    .await;
     let bus = Page::open(&plant.server.url("/#/traffic/Gateway")).await;
     bus.show(1440, 900, Scheme::Light).await;
     bus.until(
