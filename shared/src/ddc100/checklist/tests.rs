@@ -755,7 +755,7 @@ fn emergency_shutdown_of_the_network() {
         &list(UEC, &but(12, 0x0800), Wish::StartEsd),
         "remote",
         Fail,
-        "STOP",
+        "REMOTE",
     );
     says(
         &list(UEC, &but(9, 0x1004), Wish::StartEsd),

@@ -12,10 +12,11 @@ fn texts(net: &Net) -> Vec<String> {
 }
 
 fn pass(net: &mut Net, port: u8) {
+    let number = net.passes + 1;
     net.hear(DdcNews::Pass {
         bus: "Loop".into(),
         port,
-        number: 1,
+        number,
         took_us: 1,
         expected_us: 1,
     });
