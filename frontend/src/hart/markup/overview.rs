@@ -1,6 +1,6 @@
 //! What the valve does, and whether it is healthy.
 
-use super::values::value;
+use super::values::{short, value};
 use crate::components::ne107::Sign;
 use crate::format::age;
 use crate::hart::state::condition::{self, Ne107};
@@ -58,9 +58,10 @@ fn position(unit: &Unit) -> Option<Figure> {
     let Value::Number { raw, scale } = field.value else {
         return None;
     };
+    let text = good.shown.decoded.bare_text(field);
     Some(Figure {
         value: scale.to_f64(raw),
-        text: good.shown.decoded.bare_text(field),
+        text: short(&text).unwrap_or(text),
         unit: field.name.unit(),
         at: good.at_us,
         quality: None,

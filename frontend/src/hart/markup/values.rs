@@ -68,6 +68,13 @@ pub fn value(
             ],
         );
         facts::field(html, facts.as_ref());
+        if let Some(facts) = facts.as_ref().filter(|f| short(&f.value).is_some()) {
+            html.node(
+                "p",
+                "quiet",
+                &format!("Unrounded: {} {}", facts.value, facts.unit),
+            );
+        }
         if let Some(good) = reading.and_then(|r| r.good.as_ref()) {
             let tries = match good.tries {
                 0 | 1 => String::new(),
@@ -86,13 +93,39 @@ pub fn value(
     html.close("div");
 }
 
+/// A decimal number with no more than three decimals, rounded; `None` if it has no more, or is none.
+///
+/// A float of 32 bits has about seven digits that mean something, a valve no more than three.
+#[must_use]
+pub fn short(text: &str) -> Option<String> {
+    let (whole, decimals) = text.split_once('.')?;
+    let digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    let (sign, whole) = match whole.strip_prefix('-') {
+        Some(rest) => ("-", rest),
+        None => ("", whole),
+    };
+    if decimals.len() <= 3 || !digits(whole) || !digits(decimals) {
+        return None;
+    }
+    let (kept, rest) = decimals.split_at(3);
+    let thousandths = format!("{whole}{kept}").parse::<u64>().ok()? + u64::from(rest >= "5");
+    let (whole, part) = (thousandths / 1000, thousandths % 1000);
+    let all = format!("{sign}{whole}.{part:03}");
+    Some(all.trim_end_matches('0').trim_end_matches('.').to_owned())
+}
+
 /// The value itself, or why there is none.
 fn said(html: &mut Markup, reading: Option<&Reading>, facts: Option<&Facts>) {
     html.open("span", &[("class", "value-said")]);
     match facts {
         Some(facts) => {
             let blank = facts.value.trim().is_empty();
-            let text = if blank { "empty" } else { &facts.value };
+            let rounded = short(&facts.value);
+            let text = if blank {
+                "empty"
+            } else {
+                rounded.as_deref().unwrap_or(&facts.value)
+            };
             html.node(
                 if blank { "span" } else { "b" },
                 if blank { "quiet" } else { "" },
@@ -204,6 +237,25 @@ mod tests {
     use super::*;
     use crate::hart::state::unit::tests::{POLL, answer, hear, poll, request, unit};
     use shared::proto::Outcome;
+
+    #[test]
+    fn floats_are_short_and_rounded() {
+        for (text, wanted) in [
+            ("12.916666", Some("12.917")),
+            ("30.000002", Some("30")),
+            ("-0.99996", Some("-1")),
+            ("0.0625", Some("0.063")),
+            ("99.9994", Some("99.999")),
+            ("12.5", None),
+            ("12.917", None),
+            ("7", None),
+            ("2024.01.0111", None),
+            ("v1.0000", None),
+            ("not a number", None),
+        ] {
+            assert_eq!(short(text).as_deref(), wanted, "{text}");
+        }
+    }
 
     #[test]
     fn reasons_are_text() {

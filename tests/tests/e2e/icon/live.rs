@@ -290,7 +290,7 @@ async fn a_whole_device_is_read_saved_and_compared() {
     page.click("[data-testid=compare-fresh]").await;
     page.wait_within(
         "/^No (lasting )?change/.test(document.querySelector('[data-testid=compare-sum]')?.innerText)",
-        std::time::Duration::from_secs(60),
+        Duration::from_secs(60),
     )
     .await;
     page.look("icon-live-fresh").await;
