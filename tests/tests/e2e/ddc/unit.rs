@@ -24,8 +24,10 @@ async fn values_tell_how_old_they_are() {
     }
     // Table 3.7: open is 256 in register 1, function 06; CRC by the peers' tests of such frames.
     let frame = page.text("[data-testid=would-be]").await;
+    let is_bytes = |line: &&str| line.chars().all(|c| c.is_ascii_hexdigit() || c == ' ');
+    let bytes: String = frame.lines().filter(is_bytes).collect();
     assert!(
-        frame.contains("256") && frame.replace(' ', "").contains("020600000100"),
+        frame.contains("256") && bytes.replace(' ', "").starts_with("020600000100"),
         "{frame}"
     );
     page.look("ddc-unit-fresh").await;
