@@ -154,20 +154,21 @@ impl Checklist {
 
 /// Goes through the list for a unit.
 ///
-/// `faults` are the host's, by port; `scaling` is how register 8 is set.
+/// `faults` are the host's, by port; `scaling` is how register 8 is set, `None` if nobody said it.
 #[must_use]
 pub fn checklist(
     kind: Device,
     image: &Image,
     faults: Pair<Option<bool>>,
-    scaling: Scaling,
+    scaling: Option<Scaling>,
     moment: Moment,
     wish: Wish,
 ) -> Checklist {
     let look = Look {
         kind,
         image,
-        scaling,
+        scaling: scaling.unwrap_or_default(),
+        is_said: scaling.is_some(),
         wish,
         moment,
     };

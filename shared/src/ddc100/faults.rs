@@ -99,6 +99,19 @@ impl FaultTable {
         line.cells.set(port, cell);
     }
 
+    /// Takes in that a whole pass on a port found every fault there as it is known. This counts as
+    /// one look, not as one for each unit: the window of [`FaultTable::is_unsteady`] is that of looks.
+    pub fn confirm(&mut self, port: HostPort) {
+        self.seen = self.seen.saturating_add(1);
+        for line in &mut self.units {
+            let fault = line.cells.get(port).fault;
+            if fault.is_some() {
+                let seen = self.seen;
+                line.cells.set(port, Cell { fault, seen });
+            }
+        }
+    }
+
     /// Takes in that the host lost one of its ports, or has it back. Without the port no unit can
     /// be reached through it; with the port back nothing is known until each was tried anew.
     pub fn set_port(&mut self, port: HostPort, up: bool) {

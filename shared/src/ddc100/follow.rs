@@ -81,16 +81,9 @@ impl Follower {
         let next = number == self.passes.saturating_add(1);
         let quiet = core::mem::replace(&mut self.quiet, true) && next;
         self.passes = number;
-        let Some(of) = HostPort::from_number(port).filter(|of| quiet && self.table.is_up(*of))
-        else {
-            return;
-        };
-        let known: Vec<(u8, Option<bool>)> =
-            self.table.units().map(|(u, f)| (u, f.get(of))).collect();
-        for (unit, fault) in known {
-            if let Some(failed) = fault {
-                self.table.note(unit, of, failed);
-            }
+        let of = HostPort::from_number(port).filter(|of| quiet && self.table.is_up(*of));
+        if let Some(of) = of {
+            self.table.confirm(of);
         }
     }
 }

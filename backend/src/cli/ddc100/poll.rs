@@ -8,7 +8,7 @@ use crate::config::{Config, DdcConfig, DeviceConfig};
 use crate::sim;
 use shared::capture::Micros;
 use shared::ddc100::HostPort;
-use shared::ddc100::diagnosis::{Diagnosis, diagnose};
+use shared::ddc100::diagnosis::{Diagnosis, Finding, diagnose};
 use shared::ddc100::follow::Follower;
 use shared::ddc100::scaling::Scaling;
 use shared::ddc100::view::View;
@@ -276,6 +276,7 @@ fn meaning(diagnosis: &Diagnosis) -> String {
     for finding in &diagnosis.findings {
         let sure = match diagnosis.is_certain(finding) {
             true => "certain",
+            false if matches!(finding, Finding::Untried(_)) => "unknown",
             false if finding.is_ambiguous() => "ambiguous",
             false if diagnosis.unsettled > 0 => "preliminary",
             false => "in doubt",
@@ -392,7 +393,7 @@ mod tests {
             lines(&state, 0, "1 "),
             ["1 MOV-1 ddc100-uec - - - - not polled yet"]
         );
-        assert_eq!(lines(&state, 0, "ambiguous").len(), 1, "not known yet");
+        assert_eq!(lines(&state, 0, "unknown").len(), 1, "not known yet");
         round(&mut state, [[0, 0]; 3], 1);
         round(&mut state, [[0, 0]; 3], 3);
         assert_eq!(lines(&state, 6, "Jetty"), ["Jetty, pass 4: 1.23 s"]);

@@ -67,13 +67,15 @@ pub fn watched(tab: &str, family: Option<Family>) -> (Vec<Key>, u32) {
         "traffic" => (vec![plain(3)], 500),
         "variables" => (vec![plain(3), variables()], 1000),
         "status" => {
-            let mut keys = vec![plain(48)];
+            let mut keys = vec![plain(48), plain(3)];
             if family == Some(Family::Cva) {
                 keys.push(status_word());
             }
             (keys, 2000)
         }
-        _ => (Vec::new(), 1000),
+        "map" => (vec![plain(48), plain(3)], 2000),
+        // A demand that goes away must be seen here, too.
+        _ => (vec![plain(3)], 2000),
     }
 }
 
@@ -199,8 +201,10 @@ mod tests {
         hear(&mut unit, 3, 0, &poll(51.0), 11);
         assert!(!has(&unit, "overview", 133, 11) && !has(&unit, "overview", 48, 11));
         hear(&mut unit, 3, 0, &poll(f32::NAN), 12);
-        for tab in ["overview", "traffic", "variables"] {
-            assert!(has(&unit, tab, 133, 12) && has(&unit, tab, 48, 12));
+        for (tab, _) in TABS {
+            let (polled, _) = watched(tab, None);
+            assert!(polled.contains(&plain(3)), "{tab}: its demand is looked at");
+            assert!(has(&unit, tab, 133, 12) && has(&unit, tab, 48, 12), "{tab}");
         }
         hear(&mut unit, 133, 0, &[1], 13);
         hear(&mut unit, 48, 0, &[0; 9], 13);

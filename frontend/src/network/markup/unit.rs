@@ -2,6 +2,7 @@
 
 use shared::address::{Address, Table};
 use shared::ddc100::scaling::Scaling;
+use shared::ddc100::view::has_bits;
 use shared::ddc100::words::{STATUS, register};
 use shared::device::Device;
 use shared::map::row::{Kind, Row};
@@ -232,12 +233,7 @@ pub fn faults(html: &mut Markup, net: &Net, judged: &Judged, cards: &Cards<'_>) 
         html.close("p");
     }
     if judged.view.faults.is_empty() {
-        let words = if judged.known {
-            "No fault bit is set."
-        } else {
-            "The status was not read yet."
-        };
-        html.node("p", "quiet", words);
+        html.node("p", "quiet", &none_set(unit, net));
     } else {
         html.open("ul", &[("class", "conditions")]);
         for fault in &judged.view.faults {
@@ -287,6 +283,31 @@ pub fn faults(html: &mut Markup, net: &Net, judged: &Judged, cards: &Cards<'_>) 
         );
     }
     html.close("div");
+}
+
+/// What is said if no fault bit counts: of which registers that holds, and of which it is not known.
+fn none_set(unit: &Unit, net: &Net) -> String {
+    let newest = unit.newest().unwrap_or(0);
+    let fresh = |number: &u16| {
+        let at = unit.read_at(*number);
+        at.is_some_and(|at| newest.saturating_sub(at) <= net.bits_last_us())
+    };
+    let all = [9, 10, 14, 15].into_iter();
+    let all = all.filter(|number| has_bits(unit.device, *number));
+    let (read, unknown): (Vec<u16>, Vec<u16>) = all.partition(fresh);
+    let list = |numbers: &[u16]| {
+        let texts: Vec<String> = numbers.iter().map(u16::to_string).collect();
+        texts.join(", ")
+    };
+    match (read.is_empty(), unknown.is_empty()) {
+        (true, _) => "The status was not read yet.".to_owned(),
+        (_, true) => "No fault bit is set.".to_owned(),
+        _ => format!(
+            "No fault bit is set in register {}; of {} it is not known.",
+            list(&read),
+            list(&unknown)
+        ),
+    }
 }
 
 /// Reading all registers, and how that went.
@@ -525,7 +546,10 @@ mod tests {
         let judged = Judged::of(&net.units[1], &net, &Tags::default());
         let cards = Cards::of(&net, &net.units[1], 41_000_000, false);
         let html = drawn(|html| faults(html, &net, &judged, &cards));
-        assert!(html.contains("No fault bit is set."), "{html}");
+        assert!(
+            html.contains("No fault bit is set in register 9; of 10, 14, 15 it is not known."),
+            "{html}"
+        );
         assert!(html.contains("data-testid=\"old-fault\" data-key=\"user_fault_2\""));
         assert!(html.contains("36 s ago") && html.contains("they do not count"));
         assert!(html.contains("register 9: 1.0 s ago; registers 10, 14, 15: 36 s ago"));

@@ -63,7 +63,8 @@ pub(super) fn UnitPage() -> impl IntoView {
                 one: of.fault[0],
                 two: of.fault[1],
             };
-            let scaling = store.tags.with(|tags| tags.scaling(of, 8));
+            let chosen = store.tags.with(|tags| tags.chosen(of.info.unit, 8));
+            let scaling = of.said_scaling(chosen);
             let moment = Moment {
                 now: Micros::new(now),
                 most: net.values_last_us(),

@@ -25,8 +25,6 @@ const TOGETHER_MS: u64 = 60_000;
 pub struct Event {
     /// When it was found first, in milliseconds since 1970.
     pub at_ms: u64,
-    /// When the last of its units joined.
-    last_ms: u64,
     /// The units that it is about; none if it is about the network.
     units: Vec<u8>,
     /// What it is.
@@ -68,19 +66,17 @@ impl Log {
     fn push(&mut self, units: &[u8], says: String) {
         let now = self.now_ms;
         let joins = |e: &&mut Event| {
-            e.says == says && !e.units.is_empty() && now.saturating_sub(e.last_ms) <= TOGETHER_MS
+            e.says == says && !e.units.is_empty() && now.saturating_sub(e.at_ms) <= TOGETHER_MS
         };
         if let [unit] = units
             && let Some(event) = self.events.iter_mut().take(4).find(joins)
             && !event.units.contains(unit)
         {
             event.units.push(*unit);
-            event.last_ms = now;
             return;
         }
         self.events.push_front(Event {
             at_ms: now,
-            last_ms: now,
             units: units.to_vec(),
             says,
         });
@@ -117,7 +113,13 @@ impl Log {
 
     /// What the pattern of faults means, once every poll bears it out.
     pub(super) fn findings(&mut self, diagnosis: &Diagnosis) {
-        let told = |f: &&Finding| !matches!(f, Finding::NoFault | Finding::Untried(_));
+        // That a port is lost was told when it was.
+        let told = |f: &&Finding| {
+            !matches!(
+                f,
+                Finding::NoFault | Finding::Untried(_) | Finding::PortDown(_)
+            )
+        };
         let all = diagnosis.findings.iter().filter(told);
         let now: Vec<String> = all.map(Finding::to_string).collect();
         let before = core::mem::replace(&mut self.found, now.clone());

@@ -13,7 +13,10 @@ use crate::image::Image;
 pub(super) struct Look<'a> {
     pub(super) kind: Device,
     pub(super) image: &'a Image,
+    /// How register 8 is set, or the default.
     pub(super) scaling: Scaling,
+    /// True if somebody said how.
+    pub(super) is_said: bool,
     pub(super) wish: Wish,
     pub(super) moment: Moment,
 }
@@ -247,9 +250,15 @@ impl Look<'_> {
     /// The one-step move-to counts in percent (section 3.2.6, rules).
     pub(super) fn scale(&self) -> Item {
         let (verdict, text) = match self.scaling {
-            Scaling::Percent => (
+            Scaling::Percent if self.is_said => (
                 Verdict::Pass,
-                "The unit is taken to be scaled 0-100, as chosen here; no register tells.".to_owned(),
+                "The unit is scaled 0-100, as it was chosen or as its tag list says; no register tells."
+                    .to_owned(),
+            ),
+            Scaling::Percent => (
+                Verdict::Unknown,
+                "The move-to in one step wants a unit that is scaled 0-100. That is usual, but nobody said it of this one, and no register tells: choose its scale."
+                    .to_owned(),
             ),
             Scaling::Raw => (
                 Verdict::Unknown,

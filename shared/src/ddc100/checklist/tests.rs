@@ -43,7 +43,7 @@ const NOW: Moment = Moment {
 };
 
 fn list(kind: Device, image: &Image, wish: Wish) -> Checklist {
-    checklist(kind, image, REACHED, Scaling::Percent, NOW, wish)
+    checklist(kind, image, REACHED, Some(Scaling::Percent), NOW, wish)
 }
 
 /// The notes in one text.
@@ -103,7 +103,7 @@ fn communication_first() {
             UEC,
             &image(&READY),
             faults,
-            Scaling::Percent,
+            Some(Scaling::Percent),
             NOW,
             Wish::Stop,
         )
@@ -271,7 +271,7 @@ fn not_there_already() {
         UEC,
         &image(&READY),
         REACHED,
-        Scaling::Byte,
+        Some(Scaling::Byte),
         NOW,
         Wish::MoveTo(61),
     );
@@ -608,7 +608,14 @@ fn there_already_on_each_scale() {
         (Scaling::Byte, 6, 2, false),
     ] {
         let image = but(8, word);
-        let list = checklist(UEC, &image, REACHED, scaling, NOW, Wish::MoveTo(percent));
+        let list = checklist(
+            UEC,
+            &image,
+            REACHED,
+            Some(scaling),
+            NOW,
+            Wish::MoveTo(percent),
+        );
         let (verdict, words) = if there {
             (Fail, "already")
         } else {
@@ -621,7 +628,7 @@ fn there_already_on_each_scale() {
         UEC,
         &but(8, 50),
         REACHED,
-        Scaling::Raw,
+        Some(Scaling::Raw),
         NOW,
         Wish::MoveTo(50),
     );
@@ -633,7 +640,7 @@ fn there_already_on_each_scale() {
 fn rules_of_the_one_step_move() {
     let move_to = |scaling| {
         let wish = Wish::MoveTo(30);
-        checklist(UEC, &image(&READY), REACHED, scaling, NOW, wish)
+        checklist(UEC, &image(&READY), REACHED, Some(scaling), NOW, wish)
     };
     says(&move_to(Scaling::Percent), "scale", Pass, "scaled 0-100");
     assert_eq!(move_to(Scaling::Percent).verdict(), Pass);
@@ -646,9 +653,21 @@ fn rules_of_the_one_step_move() {
     );
     says(&move_to(Scaling::Raw), "scale", Unknown, "not known");
     assert_eq!(move_to(Scaling::Byte).verdict(), Fail);
+    // Nobody said it: the default is no knowledge.
+    let unsaid = checklist(UEC, &image(&READY), REACHED, None, NOW, Wish::MoveTo(30));
+    says(&unsaid, "scale", Unknown, "nobody said it");
+    assert_eq!(unsaid.verdict(), Unknown);
     // Open and Close do not count in percent.
     assert_eq!(
-        checklist(UEC, &image(&READY), REACHED, Scaling::Byte, NOW, Wish::Open).verdict(),
+        checklist(
+            UEC,
+            &image(&READY),
+            REACHED,
+            Some(Scaling::Byte),
+            NOW,
+            Wish::Open
+        )
+        .verdict(),
         Pass
     );
     for (kind, words) in [
@@ -786,7 +805,7 @@ fn old_values_are_not_relied_on() {
             now: Micros::new(seconds * 1_000_000),
             ..NOW
         };
-        checklist(UEC, image, REACHED, Scaling::Percent, moment, wish)
+        checklist(UEC, image, REACHED, Some(Scaling::Percent), moment, wish)
     };
     // Read at about 0.1 ms; ten seconds are allowed.
     assert_eq!(at(10, &image(&READY), Wish::Open).verdict(), Pass);
@@ -834,7 +853,8 @@ fn without_a_connection_nothing_is_known() {
         online: false,
         ..NOW
     };
-    let list = |image: &Image, wish| checklist(UEC, image, REACHED, Scaling::Percent, off, wish);
+    let list =
+        |image: &Image, wish| checklist(UEC, image, REACHED, Some(Scaling::Percent), off, wish);
     let open = list(&image(&READY), Wish::Open);
     assert!(
         open.items.iter().all(|i| i.verdict == Unknown),

@@ -23,7 +23,7 @@ impl Finding {
             Self::Nothing { .. } => "A dead port, a break before the first unit and units without power all look the same.".to_owned(),
             Self::OneSided { .. } => "The signal gets past the unit both ways, so no break explains it; noise, a changing fault or a damaged port of the unit may.".to_owned(),
             Self::Unsteady(_) => "A loose contact, noise and a supply that drops out look the same.".to_owned(),
-            Self::Untried(_) => "The first passes are not over.".to_owned(),
+            Self::Untried(_) => "Not every unit was tried on each port yet, since the start or since a port came back.".to_owned(),
             Self::NoFault
             | Self::PortDown(_)
             | Self::OffLine(_)

@@ -183,3 +183,27 @@ fn events_as_csv() {
     );
     assert_eq!(csv, "time,found\nt5,\"unit 1, A: no answer on port 1\"\n");
 }
+
+/// The same on another unit every 50 seconds: each minute has a row of its own.
+#[test]
+fn rows_last_a_minute() {
+    let mut net = network(4, DdcShape::Loop, 2);
+    for (unit, seconds) in [(1, 0), (2, 50), (3, 100), (4, 150)] {
+        net.log.now_ms = seconds * 1000;
+        poll(&mut net, unit, [Some(true), Some(false)], &WELL);
+    }
+    let rows: Vec<(u64, String)> = net
+        .log
+        .events
+        .iter()
+        .map(|e| (e.at_ms / 1000, e.text()))
+        .collect();
+    let row = |at: u64, text: &str| (at, text.to_owned());
+    assert_eq!(
+        rows,
+        [
+            row(100, "units 3 and 4: no answer on port 1"),
+            row(0, "units 1 and 2: no answer on port 1"),
+        ]
+    );
+}

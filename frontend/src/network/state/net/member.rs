@@ -148,12 +148,18 @@ impl Unit {
         register(&self.image, number).map(|cell| cell.at.get())
     }
 
-    /// How its analog values are scaled: as chosen here, else as the tag list of the bridge says,
-    /// else in percent.
+    /// How its analog values are scaled, if somebody said it: as chosen here, else as the tag list of
+    /// the bridge says.
+    #[must_use]
+    pub fn said_scaling(&self, chosen: Option<Scaling>) -> Option<Scaling> {
+        let listed = || Scaling::from_key(self.info.scaling.as_deref()?);
+        chosen.or_else(listed)
+    }
+
+    /// How its analog values are scaled: as somebody said, else in percent.
     #[must_use]
     pub fn scaling(&self, chosen: Option<Scaling>) -> Scaling {
-        let listed = || Scaling::from_key(self.info.scaling.as_deref()?);
-        chosen.or_else(listed).unwrap_or_default()
+        self.said_scaling(chosen).unwrap_or_default()
     }
 
     /// Its tag, or its address if it has none.
