@@ -1,4 +1,4 @@
-//! The verbs of the laboratory: `bless`, `bench`, `fuzz`.
+//! The verbs of the laboratory: `bless`, `bench`, `fuzz`, `soak`.
 
 use crate::toolchain::{self, WASM};
 use crate::{Result, shell, test};
@@ -33,6 +33,19 @@ pub fn bench() -> Result {
     let mut command = shell::cargo(args);
     command.args(["--test", "bench_browser", "--", "--nocapture"]);
     shell::run(browser.environment(&mut command))
+}
+
+/// Polls DDC-100 networks of all shapes with random troubles for some hours of simulated time, and
+/// holds that no certain finding is wrong.
+pub fn soak(hours: Option<&str>) -> Result {
+    let hours: u32 = hours
+        .unwrap_or("24")
+        .parse()
+        .map_err(|_| "usage: cargo xtask soak [hours]")?;
+    let args = ["test", "-p", "tests", "--release", "--test", "ddc100_soak"];
+    let mut command = shell::cargo(args);
+    command.env("DDC100_SOAK_HOURS", hours.to_string());
+    shell::run(command.args(["--", "--nocapture"]))
 }
 
 /// Fuzzes each target for some seconds.

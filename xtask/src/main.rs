@@ -34,6 +34,7 @@ cargo xtask <verb>
   bless             rewrite the expected output of the golden tests
   bench             native and browser benchmarks
   fuzz [seconds]    fuzz each target for so long (default 60)
+  soak [hours]      DDC-100 networks polled for so long in simulated time (default 24)
   help              this text
 ";
 
@@ -65,6 +66,7 @@ fn run(verb: Option<&str>, rest: &[String]) -> Result {
         Some("bless") => lab::bless(),
         Some("bench") => lab::bench(),
         Some("fuzz") => lab::fuzz(rest.first().map(String::as_str)),
+        Some("soak") => lab::soak(rest.first().map(String::as_str)),
         // Called by cargo for every wasm test; not for people, so not in the help.
         Some("wasm-test-runner") => wasm_test_runner::run(rest),
         Some("help" | "--help" | "-h") => {

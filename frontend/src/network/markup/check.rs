@@ -165,7 +165,14 @@ mod tests {
             };
             let wish = from_key(key, percent).unwrap();
             let scaling = Scaling::Percent;
-            let list = check(unit.device, &unit.image, faults, Some(scaling), moment, wish);
+            let list = check(
+                unit.device,
+                &unit.image,
+                faults,
+                Some(scaling),
+                moment,
+                wish,
+            );
             drawn(|html| checklist(html, &list, now))
         };
         let html = list("open", 0, 8_000_000, true);
