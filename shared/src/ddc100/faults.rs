@@ -99,8 +99,13 @@ impl FaultTable {
         line.cells.set(port, cell);
     }
 
-    /// Takes in that a whole pass on a port found every fault there as it is known. This counts as
-    /// one look, not as one for each unit: the window of [`FaultTable::is_unsteady`] is that of looks.
+    /// Takes in that so many polls were made of which no more is known: the window of
+    /// [`FaultTable::is_unsteady`] is one of polls.
+    pub const fn elapse(&mut self, polls: u64) {
+        self.seen = self.seen.saturating_add(polls);
+    }
+
+    /// Takes in that a whole pass on a port found every fault there as it is known.
     pub fn confirm(&mut self, port: HostPort) {
         self.seen = self.seen.saturating_add(1);
         for line in &mut self.units {

@@ -6,6 +6,7 @@
 //!
 //! - A fault that is news makes all the rest to be looked at anew, however long ago it came about.
 //! - A poll bears out the fault on the port that it went through.
+//! - A pass is as many polls as there are units, however few of them were told of.
 //! - A whole pass bears out all faults on its port if nothing changed since the pass before it.
 //! - What the host does not know any more, because a port came back, is not known here either.
 
@@ -21,6 +22,8 @@ pub struct Follower {
     quiet: bool,
     /// Number of that pass.
     passes: u64,
+    /// Polls that were told of since.
+    polls: u64,
 }
 
 impl Follower {
@@ -31,6 +34,7 @@ impl Follower {
             table: FaultTable::new(units, second),
             quiet: false,
             passes: 0,
+            polls: 0,
         }
     }
 
@@ -67,7 +71,10 @@ impl Follower {
             match fault {
                 // A lost port says the same of all units; the news of the port tell it.
                 Some(_) if !self.table.is_up(of) => continue,
-                Some(failed) if news || of.number() == port => self.table.note(unit, of, failed),
+                Some(failed) if news || of.number() == port => {
+                    self.table.note(unit, of, failed);
+                    self.polls = self.polls.saturating_add(1);
+                }
                 None if news => self.table.forget(unit, of),
                 _ => {}
             }
@@ -80,6 +87,11 @@ impl Follower {
         // One that was missed may have seen a fault that is over again.
         let next = number == self.passes.saturating_add(1);
         let quiet = core::mem::replace(&mut self.quiet, true) && next;
+        // Each pass polled each unit, whether it was told of or not.
+        let units = u64::try_from(self.table.len()).unwrap_or(u64::MAX);
+        let made = number.saturating_sub(self.passes).saturating_mul(units);
+        self.table.elapse(made.saturating_sub(self.polls));
+        self.polls = 0;
         self.passes = number;
         let of = HostPort::from_number(port).filter(|of| quiet && self.table.is_up(*of));
         if let Some(of) = of {
@@ -188,5 +200,31 @@ mod tests {
         assert!(keys(&follower).contains(&"port_down"));
         follower.hear(&port(2, LineState::Up));
         assert_eq!(follower.table().fault(1, HostPort::Two), None);
+    }
+
+    /// A unit that came and went is steady again after sixteen passes on both ports, though none of
+    /// the polls since were told of.
+    #[test]
+    fn passes_go_by_without_news_of_units() {
+        let mut follower = Follower::new(1..=10, true);
+        let mut number = 0;
+        let mut failed = false;
+        for _ in 0..7 {
+            failed = !failed;
+            follower.hear(&unit(3, 1, [Some(failed), Some(false)]));
+            number += 1;
+            follower.hear(&pass(1, number));
+        }
+        assert!(follower.table().is_unsteady(3));
+        for _ in 0..20 {
+            number += 1;
+            follower.hear(&pass(1, number));
+        }
+        assert!(follower.table().is_unsteady(3), "as the host would say");
+        follower.hear(&pass(1, number + 20));
+        assert!(
+            !follower.table().is_unsteady(3),
+            "passes that were missed count"
+        );
     }
 }
