@@ -7,13 +7,13 @@ use shared::capture::Micros;
 use shared::device::Device;
 use shared::icon3000::plan::Probe;
 use shared::icon3000::records::groups;
-use shared::icon3000::{FileRead, Files, Log, Records, Span};
+use shared::icon3000::{File, FileRead, Files, Log, Records, Span};
 use shared::image::Image;
 use shared::map::row::{Access, DeviceMap, Kind, Row};
 use shared::proto::{IconStep, Outcome, TableName};
 
 use super::logs::moment;
-use super::wanted::LIMITS;
+use super::wanted::{LIMITS, RUNS, step_of, stored};
 
 /// A record of a file, and when it was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +41,14 @@ pub struct Failure {
     pub again: bool,
 }
 
+impl Failure {
+    /// True if it is not asked for again in a read that began at a time.
+    #[must_use]
+    pub const fn is_final(&self, since: u64) -> bool {
+        self.at >= since && !self.again
+    }
+}
+
 /// An answer as it came.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
@@ -58,6 +66,9 @@ pub struct Reading {
     /// When, in microseconds.
     pub at: u64,
 }
+
+/// What a log is said to have failed with whose head was another one in the end.
+pub const CHANGED: &str = "the log changed while it was read; read it again";
 
 /// Readings of a counter that are kept.
 const READINGS: usize = 720;
@@ -121,6 +132,8 @@ pub struct Dossier {
     pub failed: BTreeMap<Subject, Failure>,
     /// How far the file is known whose length nothing tells, and since when.
     pub probe: Option<(Probe, u64)>,
+    /// Logs of which more than the head was read, but the head not once more after that.
+    pub unchecked: Vec<u16>,
 }
 
 impl Dossier {
@@ -162,15 +175,32 @@ impl Dossier {
             }
             &[8, high, low, ..] => self.counter(u16::from_be_bytes([high, low]), response, at),
             [0x14, ..] => self.file_answer(request, response, at),
-            _ => self
-                .image
-                .absorb(request, response, Micros::new(at))
-                .map(|(table, start, _)| Subject::Block(table.read_function(), start.get())),
+            _ => self.registers(request, response, at),
         };
         if let Some(subject) = taken {
             self.failed.remove(&subject);
         }
         taken.is_some()
+    }
+
+    fn registers(&mut self, request: &[u8], response: &[u8], at: u64) -> Option<Subject> {
+        let at = Micros::new(at);
+        let (table, start, count) = self.image.absorb(request, response, at)?;
+        let (function, start) = (table.read_function(), start.get());
+        // What was refused as part of it is known now.
+        let known = |s: &Subject| match *s {
+            Subject::Block(f, at) => f == function && at >= start && at - start < count,
+            _ => false,
+        };
+        self.failed.retain(|subject, _| !known(subject));
+        // Curves beyond those that are stored are left from before.
+        for ((first, most), stored) in RUNS.into_iter().zip(stored(self)) {
+            if let Some(stored) = stored {
+                let gone = first + stored + 1..=first + most;
+                self.files.retain(|file, _| !gone.contains(file));
+            }
+        }
+        Some(Subject::Block(function, start))
     }
 
     fn counter(&mut self, sub: u16, response: &[u8], at: u64) -> Option<Subject> {
@@ -191,19 +221,21 @@ impl Dossier {
         Some(Subject::Diagnostic(sub))
     }
 
-    /// The response repeats neither file nor record; both are in the request. All groups fit what
-    /// was asked for, or nothing is taken.
     fn file_answer(&mut self, request: &[u8], response: &[u8], at: u64) -> Option<Subject> {
-        let asked = FileRead::of_pdu(request)?;
-        let groups = groups(response)?;
-        let mut pairs = asked.spans().iter().zip(&groups);
-        let fits = pairs.all(|(span, words)| words.len() == usize::from(span.count));
-        if !fits || groups.len() != asked.spans().len() {
-            return None;
-        }
-        for (span, words) in asked.spans().iter().zip(groups) {
+        let pairs = pairs(request, response)?;
+        let subject = pairs.first().map(|(span, _)| Subject::File(span.file));
+        for (span, words) in pairs {
             let kept = self.files.entry(span.file).or_default();
             let first = usize::from(span.start);
+            if File::of(span.file).is_some_and(File::is_log) {
+                let head = kept.first().copied().flatten().map(|r| r.word);
+                if first > 0 {
+                    self.unchecked.push(span.file);
+                } else if head.is_some() && head != words.first().copied() {
+                    // With another number of entries those of before have other places.
+                    kept.clear();
+                }
+            }
             if kept.len() < first + words.len() {
                 kept.resize(first + words.len(), None);
             }
@@ -211,9 +243,31 @@ impl Dossier {
                 *record = Some(Record { word, at });
             }
             self.failed.remove(&Subject::File(span.file));
-            self.probed(*span, true, at);
+            self.probed(span, true, at);
         }
-        asked.spans().first().map(|span| Subject::File(span.file))
+        subject
+    }
+
+    /// Compares a good answer with what is known of its logs; one that is not the same any more
+    /// changed while it was read. False if it is none to what was asked.
+    pub fn compare(&mut self, request: &[u8], response: &[u8], at: u64) -> bool {
+        let Some(pairs) = pairs(request, response) else {
+            return false;
+        };
+        for (span, words) in pairs {
+            self.unchecked.retain(|file| *file != span.file);
+            if self.records(span.file, 0).run(span.start, span.count) != Some(words) {
+                self.fail(step_of(span), Outcome::Ok, 0, CHANGED, at);
+            }
+        }
+        true
+    }
+
+    /// True if a log changed while it was read.
+    #[must_use]
+    pub fn changed(&self, file: u16) -> bool {
+        let failure = self.failed.get(&Subject::File(file));
+        failure.is_some_and(|f| f.text == CHANGED)
     }
 
     /// Goes on in the file whose length nothing tells, if that is what was asked for.
@@ -228,6 +282,10 @@ impl Dossier {
                 probe.refused();
             }
             self.probe = Some((probe, at));
+            let kept = self.files.get_mut(&LIMITS);
+            if let Some(kept) = kept.filter(|_| probe.next().is_none()) {
+                kept.truncate(probe.found().into());
+            }
         }
     }
 
@@ -356,9 +414,22 @@ impl Dossier {
     }
 }
 
+/// Stretches of files with their records. The response repeats neither file nor record; both are in
+/// the request. All groups fit what was asked for, or there are none.
+fn pairs(request: &[u8], response: &[u8]) -> Option<Vec<(Span, Vec<u16>)>> {
+    let asked = FileRead::of_pdu(request)?;
+    let groups = groups(response)?;
+    let as_many = groups.len() == asked.spans().len();
+    let pairs: Vec<_> = asked.spans().iter().copied().zip(groups).collect();
+    let fits = |(span, words): &(Span, Vec<u16>)| words.len() == usize::from(span.count);
+    (as_many && pairs.iter().all(fits)).then_some(pairs)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::actuator::markup::rows::tests::put as put_registers;
+    use crate::actuator::state::logs::tests::put;
 
     fn empty() -> Dossier {
         Dossier::new("XV-101", Device::Icon3000v2)
@@ -451,6 +522,71 @@ mod tests {
             Some(3610),
             "an hour and 12 s less 2 s"
         );
+    }
+
+    /// An alarm takes 6 bytes behind a head of 2 (section 8.11.1). Two became one, then none.
+    #[test]
+    fn a_log_that_is_shorter_now_keeps_nothing_of_before() {
+        let mut dossier = empty();
+        put(&mut dossier, 2, &[[2].as_slice(), &[7; 6]].concat());
+        put(&mut dossier, 2, &[2]);
+        assert_eq!(dossier.records(2, 0).len(), 7, "as many as before");
+        for head in [1, 0] {
+            put(&mut dossier, 2, &[head]);
+            assert_eq!(dossier.records(2, 0).stretches(), [(0, vec![head])]);
+        }
+    }
+
+    /// Nothing tells how long file 5 is but where the device refuses the next record.
+    #[test]
+    fn file_5_ends_where_it_is_refused() {
+        let mut dossier = empty();
+        put(&mut dossier, 5, &[7; 121]);
+        let refuse = |dossier: &mut Dossier, start, count| {
+            let step = step_of(Span::new(LIMITS, start, count));
+            dossier.fail(step, Outcome::Exception, 2, "illegal data address", 9);
+        };
+        for count in [121, 60, 30] {
+            refuse(&mut dossier, 0, count);
+        }
+        put(&mut dossier, 5, &[8; 15]);
+        assert_eq!(dossier.records(5, 0).len(), 121, "the end is not found yet");
+        for count in [15, 7, 3, 1] {
+            refuse(&mut dossier, 15, count);
+        }
+        assert_eq!(dossier.records(5, 0).stretches(), [(0, vec![8; 15])]);
+    }
+
+    /// HR 3513 counts the partial strokes: two, then one. The reference, file 3000, stays.
+    #[test]
+    fn curves_beyond_those_stored_are_gone() {
+        let mut dossier = empty();
+        for file in [2016, 3000, 3001, 3002, 3016, 3500] {
+            put(&mut dossier, file, &[7]);
+        }
+        let files = |dossier: &Dossier| dossier.files.keys().copied().collect::<Vec<_>>();
+        put_registers(&mut dossier, 3513, &[2], 1);
+        assert_eq!(files(&dossier), [2016, 3000, 3001, 3002, 3500]);
+        put_registers(&mut dossier, 3513, &[1], 2);
+        assert_eq!(files(&dossier), [2016, 3000, 3001, 3500]);
+    }
+
+    /// A block that was refused, and a part of it, are both known once the block answers.
+    #[test]
+    fn an_answer_mends_what_failed_within_it() {
+        let mut dossier = empty();
+        for (start, count) in [(3450, 30), (3460, 14), (3480, 1)] {
+            let table = TableName::Holding;
+            let step = IconStep::Block(shared::proto::Block {
+                table,
+                start,
+                count,
+            });
+            dossier.fail(step, Outcome::Exception, 2, "illegal data address", 1);
+        }
+        put_registers(&mut dossier, 3450, &[0; 30], 2);
+        let left: Vec<_> = dossier.failed.keys().copied().collect();
+        assert_eq!(left, [Subject::Block(3, 3480)]);
     }
 
     #[test]

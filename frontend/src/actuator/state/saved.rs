@@ -90,7 +90,10 @@ pub fn gaps(dossier: &Dossier) -> String {
     let failed = dossier.failed.values().filter(|f| dossier.has(f.step));
     let failed = u64::try_from(failed.count()).unwrap_or(0);
     if failed > 0 {
-        words.push(format!("{} refused or not answered", count(failed, "part")));
+        words.push(format!(
+            "{} refused, changed or not answered",
+            count(failed, "part")
+        ));
     }
     words.join(", ")
 }
