@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use shared::address::{Address, Table};
 use shared::capture::Micros;
 use shared::device::Device;
+use shared::icon3000::identity::Guess;
 use shared::icon3000::plan::Probe;
 use shared::icon3000::records::groups;
 use shared::icon3000::{File, FileRead, Files, Log, Records, Span};
@@ -134,6 +135,8 @@ pub struct Dossier {
     pub probe: Option<(Probe, u64)>,
     /// Logs of which more than the head was read, but the head not once more after that.
     pub unchecked: Vec<u16>,
+    /// Which model a file says it is, and why.
+    pub guess: Option<Guess>,
 }
 
 impl Dossier {
