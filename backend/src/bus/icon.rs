@@ -5,19 +5,20 @@
 //! asked for one by one, for it may be one of them only. So are the parts of a block of registers
 //! that it refuses. A busy device is asked again.
 
+mod parts;
 mod pieces;
 #[cfg(test)]
 mod tests;
 
-use super::query::{Query, is_counter};
+use super::query::Query;
 use super::{ClientId, Outlet, Report};
 use crate::config::DeviceConfig;
+use parts::{Part, parts};
 use pieces::Pieces;
 use shared::capture::Micros;
-use shared::icon3000::collect::{BUSY_TRIES, BUSY_WAIT_MS};
-use shared::icon3000::{FileRead, Span, plan};
+use shared::icon3000::collect::BUSY_WAIT_MS;
 use shared::map::row::DeviceMap;
-use shared::proto::{IconAsk, IconNews, IconStep, Outcome};
+use shared::proto::{IconAsk, IconNews, Outcome};
 use shared::render::hex;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -25,24 +26,12 @@ use tokio::time::Instant;
 
 /// Exception "illegal data address".
 const ILLEGAL_ADDRESS: u8 = 2;
-/// Exception "server device busy".
-const BUSY: u8 = 6;
 /// Reads that may wait for one device.
 const MAX_JOBS: usize = 64;
 /// After so many requests in a row without any answer the others are given up.
 const SILENT: u8 = 2;
 /// How long a page that takes nothing is waited for before it is looked at again.
 const PAUSE: Duration = Duration::from_millis(5);
-
-/// A request and the step that it belongs to; of several, the first.
-#[derive(Debug)]
-struct Part {
-    step: u32,
-    query: Query,
-    /// How often the device was busy, and when it may be asked again.
-    busy: u8,
-    not_before: Option<Instant>,
-}
 
 /// One message of a page.
 #[derive(Debug)]
@@ -358,84 +347,4 @@ impl Job {
             failed: self.failed,
         });
     }
-}
-
-impl Part {
-    /// True if the device was busy, and not too often yet.
-    fn is_again(&self, report: &Report) -> bool {
-        report.code == Some(BUSY) && self.busy < BUSY_TRIES
-    }
-
-    fn new(step: u32, query: Query) -> Self {
-        Self {
-            step,
-            query,
-            busy: 0,
-            not_before: None,
-        }
-    }
-
-    /// What is asked, for people.
-    fn words(&self) -> String {
-        match &self.query {
-            Query::Read(read) => {
-                let (first, count) = (read.start.get(), read.count());
-                format!("{count} from address {first}")
-            }
-            Query::File(file) => file.spans().first().map_or_else(String::new, |span| {
-                let more = if file.spans().len() > 1 {
-                    " and more"
-                } else {
-                    ""
-                };
-                format!("file {}, record {}{more}", span.file, span.start)
-            }),
-            Query::Identity => "identity".to_owned(),
-            Query::Diagnostic(sub) => format!("counter {sub}"),
-        }
-    }
-}
-
-/// The requests that steps take; an error is the index of a step that can't be read.
-fn parts(steps: &[IconStep]) -> Result<VecDeque<Part>, u32> {
-    let mut parts = VecDeque::new();
-    let mut files: Vec<(u32, Span)> = Vec::new();
-    for (step, what) in (0_u32..).zip(steps) {
-        let query = match *what {
-            IconStep::File { file, start, count } => {
-                let legal = u32::from(start) + u32::from(count) <= 10_000;
-                if count == 0 || !legal {
-                    return Err(step);
-                }
-                files.push((step, Span::new(file, start, count)));
-                continue;
-            }
-            IconStep::Block(block) => Query::Read(block.read().ok_or(step)?),
-            IconStep::Identity => Query::Identity,
-            IconStep::Diagnostic { sub_function } if is_counter(sub_function) => {
-                Query::Diagnostic(sub_function)
-            }
-            IconStep::Diagnostic { .. } => return Err(step),
-        };
-        parts.extend(file_parts(&files));
-        files.clear();
-        parts.push_back(Part::new(step, query));
-    }
-    parts.extend(file_parts(&files));
-    Ok(parts)
-}
-
-/// Requests for stretches of files, each with the step of its first group.
-fn file_parts(files: &[(u32, Span)]) -> Vec<Part> {
-    let step_of = |read: &FileRead| {
-        let first = read.spans().first()?;
-        let holds = |s: &Span| {
-            s.file == first.file && s.start <= first.start && u32::from(first.start) < s.end()
-        };
-        files.iter().find(|(_, s)| holds(s)).map(|(step, _)| *step)
-    };
-    plan::plan(files.iter().map(|(_, span)| *span))
-        .into_iter()
-        .map(|read| Part::new(step_of(&read).unwrap_or(0), Query::File(read)))
-        .collect()
 }

@@ -1,7 +1,7 @@
 use super::*;
 use axum::extract::ws::Utf8Bytes;
 use shared::device::Device;
-use shared::proto::{Block, TableName};
+use shared::proto::{Block, IconStep, TableName};
 use tokio::sync::mpsc;
 
 const CLIENT: ClientId = ClientId(1);

@@ -5,7 +5,7 @@ use shared::encode::Read;
 use shared::icon3000::{File, FileRead, Span};
 use shared::proto::{IconNews, IconStep, Outcome};
 
-use super::dossier::Dossier;
+use super::dossier::{CHANGED, Dossier};
 use super::wanted::{Wanted, step_of};
 
 /// What is being read.
@@ -91,14 +91,15 @@ impl Job {
                 if ok && take(dossier, &request, &response, *at_us) {
                     return false;
                 }
-                let text = if ok {
-                    "The answer does not fit what was asked."
-                } else {
-                    text
-                };
                 let code = match response[..] {
                     [function, code] if function >= 0x80 => code,
                     _ => 0,
+                };
+                let text = match (ok, code) {
+                    (true, _) => "The answer does not fit what was asked.",
+                    // The first entry was there before.
+                    (_, 2) if self.again => CHANGED,
+                    _ => text,
                 };
                 let mut fail = |step| dossier.fail(step, *outcome, code, text, *at_us);
                 match (step, FileRead::of_pdu(&request)) {
@@ -158,8 +159,9 @@ impl Job {
             let layout = File::of(*file)?.layout?;
             let whole = dossier.records(*file, self.since).is_complete(*file);
             let count = layout.head_records + layout.entry_records;
-            let unchecked = whole && dossier.unchecked.contains(file);
-            unchecked.then(|| step_of(Span::new(*file, 0, count)))
+            let entries = dossier.records(*file, 0).get(0) != Some(0);
+            let unchecked = dossier.unchecked.contains(file);
+            (whole && entries && unchecked).then(|| step_of(Span::new(*file, 0, count)))
         };
         self.wanted.files.iter().filter_map(head).collect()
     }
@@ -302,8 +304,8 @@ mod tests {
     }
 
     /// A log with one entry of three records, read whole; then its head and first entry once more,
-    /// answered with these words.
-    fn looked_at_again(words: &[&str; 4]) -> Dossier {
+    /// answered with these words; without words it is refused.
+    fn looked_at_again(words: &[&str]) -> Dossier {
         let mut dossier = Dossier::new("XV", Device::Icon3000v2);
         let only_alarms = Wanted {
             files: vec![2],
@@ -316,8 +318,12 @@ mod tests {
             (0, "140706000200000004", words.concat()),
         ] {
             let bytes = words.len() / 2;
-            let response = format!("14{:02X}{:02X}06{words}", bytes + 2, bytes + 1);
-            job.hear(&exchange(0, request, &response, Outcome::Ok), &mut dossier);
+            let good = format!("14{:02X}{:02X}06{words}", bytes + 2, bytes + 1);
+            let (response, outcome) = match bytes {
+                0 => ("9402", Outcome::Exception),
+                _ => (good.as_str(), Outcome::Ok),
+            };
+            job.hear(&exchange(0, request, response, outcome), &mut dossier);
             assert!(job.hear(&done(1, 0), &mut dossier));
             assert_eq!(job.next(2, &dossier), count > 0);
             if count > 0 {
@@ -326,7 +332,7 @@ mod tests {
                 assert_eq!(job.steps(), [IconStep::File { file, start, count }]);
             }
         }
-        assert!(job.is_whole(&dossier) && dossier.unchecked.is_empty());
+        assert!(job.is_whole(&dossier));
         assert_eq!(dossier.records(2, 0).get(1), Some(7), "it is only compared");
         dossier
     }
@@ -334,12 +340,11 @@ mod tests {
     /// A new alarm is one more, or in a log that is full the first of as many.
     #[test]
     fn a_log_that_changed_while_it_was_read_is_said() {
-        use crate::actuator::state::dossier::CHANGED;
         use crate::actuator::state::logs::Table;
         use crate::actuator::state::saved::{open, snapshot};
         let same = ["0001", "0007", "0000", "000C"];
         let dossier = looked_at_again(&same);
-        assert!(dossier.failed.is_empty());
+        assert!(dossier.failed.is_empty() && dossier.unchecked.is_empty());
         assert!(Table::of(&dossier, 2).problems.is_empty());
         for (at, word) in [(0, "0002"), (1, "0008"), (3, "000D")] {
             let mut other = same;
@@ -352,6 +357,20 @@ mod tests {
             let (opened, _) = open("x.json", &saved.to_text()).unwrap();
             assert_eq!(Table::of(&opened, 2).problems, [CHANGED]);
         }
+        // Cleared meanwhile, it has no first entry; and then there is nothing to look at again.
+        let mut dossier = looked_at_again(&[]);
+        assert_eq!(Table::of(&dossier, 2).problems, [CHANGED]);
+        let mut job = Job::new(1, wanted(), &dossier, 200, 0).unwrap();
+        for (step, file) in [(0, 2), (1, 3)] {
+            let request = format!("140706000{file}00000001");
+            let mut head = exchange(step, &request, "140403060000", Outcome::Ok);
+            if let IconNews::Exchange { at_us, .. } = &mut head {
+                *at_us = 300;
+            }
+            job.hear(&head, &mut dossier);
+        }
+        assert!(job.hear(&done(2, 0), &mut dossier) && !job.next(2, &dossier));
+        assert!(Table::of(&dossier, 2).problems.is_empty());
     }
 
     /// The part of a block that the device has not is told by its own request.
