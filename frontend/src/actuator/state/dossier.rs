@@ -201,7 +201,10 @@ impl Dossier {
         for ((first, most), stored) in RUNS.into_iter().zip(stored(self)) {
             if let Some(stored) = stored {
                 let gone = first + stored + 1..=first + most;
-                self.files.retain(|file, _| !gone.contains(file));
+                for file in gone {
+                    self.files.remove(&file);
+                    self.failed.remove(&Subject::File(file));
+                }
             }
         }
         Some(Subject::Block(function, start))
@@ -452,7 +455,13 @@ mod tests {
             put(&mut dossier, file, &[7]);
         }
         let files = |dossier: &Dossier| dossier.files.keys().copied().collect::<Vec<_>>();
+        for file in [3001, 3003] {
+            let step = step_of(Span::new(file, 0, 110));
+            dossier.fail(step, Outcome::Silence, 0, "no answer", 1);
+        }
         put_registers(&mut dossier, 3513, &[2], 1);
+        let left: Vec<_> = dossier.failed.keys().copied().collect();
+        assert_eq!(left, [Subject::File(3001)]);
         assert_eq!(files(&dossier), [2016, 3000, 3001, 3002, 3500]);
         put_registers(&mut dossier, 3513, &[1], 2);
         assert_eq!(files(&dossier), [2016, 3000, 3001, 3500]);
