@@ -3,6 +3,7 @@
 use crate::bus::query::Query;
 use crate::bus::{Handle, Report};
 use shared::address::{Address, Table};
+use shared::capture::Micros;
 use shared::encode::Read;
 use shared::icon3000::collect::{Answer, BUSY_TRIES, BUSY_WAIT_MS, Collector, Wire};
 use shared::icon3000::identity::{self, Guess, PROBES, detect};
@@ -28,7 +29,11 @@ pub struct Taken {
     pub wire: Wire,
 }
 
-/// Asks a device which model it is, by one register that only some have and by function 17.
+/// The software of the interface (reading E84), for a device that function 17 tells nothing of.
+const SOFTWARE: (u16, u16) = (3072, 2);
+
+/// Asks a device which model it is, by registers that only some have and by function 17; where that
+/// gives no report, by the register that has the software too.
 ///
 /// # Errors
 /// If the device does not answer, or the line is not there: why, and what to do.
@@ -46,13 +51,17 @@ pub async fn which(bus: &Handle, device: usize) -> Result<Guess, String> {
     }
     let report = patiently(bus, device, &Query::Identity).await?;
     let report = report.pdu.as_deref().and_then(identity::Report::of_pdu);
+    let mut image = Image::new();
+    let (at, count) = SOFTWARE;
+    let software = Read::new(Table::Holding, Address::new(at), count);
+    if let (None, Some(read)) = (&report, software) {
+        let answer = patiently(bus, device, &Query::Read(read)).await?;
+        if let Some(pdu) = answer.pdu {
+            image.absorb(&read.pdu(), &pdu, Micros::default());
+        }
+    }
     let [beyond_3473, beyond_21] = refused;
-    Ok(detect(
-        &Image::new(),
-        report.as_ref(),
-        beyond_3473,
-        beyond_21,
-    ))
+    Ok(detect(&image, report.as_ref(), beyond_3473, beyond_21))
 }
 
 /// Asks once more where the device is busy. Its answer may be an exception; none is an error.

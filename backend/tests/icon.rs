@@ -57,7 +57,11 @@ fn answer(pdu: &[u8]) -> Vec<u8> {
 }
 
 /// Answers requests of any framing until the line is closed.
-async fn device(mut line: impl AsyncRead + AsyncWrite + Unpin, framing: Framing) {
+async fn device(
+    mut line: impl AsyncRead + AsyncWrite + Unpin,
+    framing: Framing,
+    answer: fn(&[u8]) -> Vec<u8>,
+) {
     let mut heard = Vec::new();
     let mut bytes = [0; 300];
     while let Ok(count @ 1..) = line.read(&mut bytes).await {
@@ -165,7 +169,7 @@ async fn over_a_serial_port() {
         let port = near.name().unwrap();
         // Kept open, so that the line is there before and after the backend opens it.
         let _near = near;
-        tokio::spawn(device(far, framing));
+        tokio::spawn(device(far, framing, answer));
         let line = LineConfig::Serial {
             framing,
             port,
@@ -183,7 +187,7 @@ async fn over_tcp() {
         let host = listener.local_addr().unwrap().to_string();
         tokio::spawn(async move {
             while let Ok((stream, _)) = listener.accept().await {
-                tokio::spawn(device(stream, framing));
+                tokio::spawn(device(stream, framing, answer));
             }
         });
         let line = match framing {
@@ -254,13 +258,7 @@ async fn through_a_page() {
 /// A device on a line of 9600 8E1 whose time is simulated.
 fn slow(device: Device) -> bus::Handle {
     let devices = [DeviceConfig::simple("XV-1", device, UNIT)];
-    let line = LineConfig::Serial {
-        framing: Framing::Rtu,
-        port: "simulated".into(),
-        baud: 9600,
-        mode: Mode::parse("8E1").unwrap(),
-    };
-    let (clock, activity) = (Clock::start(), watch::Sender::new(0));
+    let clock = Clock::start();
     let actuators = Actuators::new(&devices, clock);
     let plug = Plug::Stream(Box::new(move || {
         let (near, far) = tokio::io::duplex(4096);
@@ -268,10 +266,22 @@ fn slow(device: Device) -> bus::Handle {
         tokio::spawn(async move { serve_rtu(far, &actuators, Pace::of(9600)).await });
         Ok(Box::new(near))
     }));
+    plugged(&devices, plug, clock)
+}
+
+/// Devices behind a plug.
+fn plugged(devices: &[DeviceConfig], plug: Plug, clock: Clock) -> bus::Handle {
+    let line = LineConfig::Serial {
+        framing: Framing::Rtu,
+        port: "simulated".into(),
+        baud: 9600,
+        mode: Mode::parse("8E1").unwrap(),
+    };
+    let activity = watch::Sender::new(0);
     let bus = config(line).buses.remove(0);
     let board = Board::new(activity.clone());
     let recorder = Recorder::new("a", clock, activity);
-    bus::start(bus, &devices, plug, clock, board, recorder)
+    bus::start(bus, devices, plug, clock, board, recorder)
 }
 
 /// All of it.
@@ -326,5 +336,41 @@ async fn a_device_tells_its_model() {
     ] {
         let guess = which(&slow(device), 0).await.unwrap();
         assert_eq!(guess.model, Some(model), "{}", guess.why);
+    }
+}
+
+/// A device without function 17 that has trouble with HR 3480 (exception 04): the software in HR 3072
+/// and 3073 tells (reading E84: 4.00 or later is an ICON3000v2).
+fn silent_of_itself(pdu: &[u8], software: &[u8; 4]) -> Vec<u8> {
+    match pdu {
+        // HR 3480.
+        [3, 0x0D, 0x98, 0, 1] => vec![0x83, 4],
+        [3, 0, 22, 0, 1] => vec![3, 2, 0, 0],
+        // HR 3072.
+        [3, 0x0C, 0, 0, 2] => [&[3, 4], &software[..]].concat(),
+        [function, ..] => vec![function | 0x80, 1],
+        [] => vec![],
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_register_of_the_software_is_asked_too() {
+    let old: fn(&[u8]) -> Vec<u8> = |pdu| silent_of_itself(pdu, b"2.03");
+    let new: fn(&[u8]) -> Vec<u8> = |pdu| silent_of_itself(pdu, b"4.01");
+    for (answer, model, software) in [
+        (old, Model::Icon3000, "2.03"),
+        (new, Model::Icon3000v2, "4.01"),
+    ] {
+        let plug = Plug::Stream(Box::new(move || {
+            let (near, far) = tokio::io::duplex(4096);
+            tokio::spawn(device(far, Framing::Rtu, answer));
+            Ok(Box::new(near))
+        }));
+        let devices = [DeviceConfig::simple("XV-1", Device::Icon3000v2, UNIT)];
+        let guess = which(&plugged(&devices, plug, Clock::start()), 0)
+            .await
+            .unwrap();
+        assert_eq!(guess.model, Some(model), "{}", guess.why);
+        assert!(guess.why.contains(software), "{}", guess.why);
     }
 }

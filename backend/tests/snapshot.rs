@@ -4,6 +4,7 @@
 use serde_json::Value;
 use shared::address::{Address, Table};
 use shared::icon3000::snapshot::parse;
+use shared::map::row::Model;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -249,10 +250,16 @@ fn every_model_says_what_it_is() {
             "{name}: {head:?}"
         );
         assert_eq!(saved.contains("5300"), files, "{name}");
+        // It was asked, and the file says what it said.
+        let guess = |file: &Path| parse(&fs::read(file).unwrap()).0.unwrap().guess;
+        let said = guess(&file).unwrap();
+        assert_eq!(said.model.map(Model::key), Some(model));
+        assert!(text(&output.stderr).contains(&said.why), "{}", said.why);
         // Told which it is, it is not asked.
         let told = device.snapshot(&file, &["--kind", model]);
         assert_eq!(code(&told), 0, "{}", text(&told.stderr));
         assert_eq!(text(&told.stderr).lines().count(), 1);
+        assert_eq!(guess(&file), None);
     }
     // Taken for a newer one, it refuses what it does not have: exit status 1, and a file all the
     // same.

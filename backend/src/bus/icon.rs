@@ -2,41 +2,36 @@
 //!
 //! Reads of all pages stand in one queue. Steps that read files and follow each other share
 //! requests, as many groups in each as fit; if the device refuses such a request, its groups are
-//! asked for one by one, for it may be one of them only. A busy device is asked again.
+//! asked for one by one, for it may be one of them only. So are the parts of a block of registers
+//! that it refuses. A busy device is asked again.
 
+mod parts;
+mod pieces;
 #[cfg(test)]
 mod tests;
 
-use super::query::{Query, is_counter};
+use super::query::Query;
 use super::{ClientId, Outlet, Report};
 use crate::config::DeviceConfig;
+use parts::{Part, parts};
+use pieces::Pieces;
 use shared::capture::Micros;
-use shared::icon3000::collect::{BUSY_TRIES, BUSY_WAIT_MS};
-use shared::icon3000::{FileRead, Span, plan};
-use shared::proto::{IconAsk, IconNews, IconStep, Outcome};
+use shared::icon3000::collect::BUSY_WAIT_MS;
+use shared::map::row::DeviceMap;
+use shared::proto::{IconAsk, IconNews, Outcome};
 use shared::render::hex;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// Exception "server device busy".
-const BUSY: u8 = 6;
+/// Exception "illegal data address".
+const ILLEGAL_ADDRESS: u8 = 2;
 /// Reads that may wait for one device.
 const MAX_JOBS: usize = 64;
 /// After so many requests in a row without any answer the others are given up.
 const SILENT: u8 = 2;
 /// How long a page that takes nothing is waited for before it is looked at again.
 const PAUSE: Duration = Duration::from_millis(5);
-
-/// A request and the step that it belongs to; of several, the first.
-#[derive(Debug)]
-struct Part {
-    step: u32,
-    query: Query,
-    /// How often the device was busy, and when it may be asked again.
-    busy: u8,
-    not_before: Option<Instant>,
-}
 
 /// One message of a page.
 #[derive(Debug)]
@@ -46,7 +41,8 @@ struct Job {
     out: Outlet,
     /// The first is under way if [`IconUnit::under_way`] says so.
     parts: VecDeque<Part>,
-    total: u32,
+    /// The block that was refused and is asked for in pieces; the first part is one of them.
+    pieces: Option<Pieces>,
     ok: u32,
     failed: u32,
     /// Requests in a row for which the device did not answer at all.
@@ -59,6 +55,7 @@ struct Job {
 #[derive(Debug)]
 pub struct IconUnit {
     tag: String,
+    map: Option<&'static DeviceMap>,
     jobs: VecDeque<Job>,
     /// The first part of the first job was sent and is not answered yet.
     under_way: bool,
@@ -70,6 +67,7 @@ impl IconUnit {
     pub fn of(device: &DeviceConfig) -> Option<Self> {
         device.device.is_icon().then(|| Self {
             tag: device.tag.clone(),
+            map: device.device.map(),
             jobs: VecDeque::new(),
             under_way: false,
         })
@@ -86,17 +84,14 @@ impl IconUnit {
                     id,
                     out,
                     parts: VecDeque::new(),
-                    total: 0,
+                    pieces: None,
                     ok: 0,
                     failed: 0,
                     silent: 0,
                     cancelled: false,
                 };
                 match parts(&steps) {
-                    Ok(parts) if !full => {
-                        job.total = u32::try_from(parts.len()).unwrap_or(u32::MAX);
-                        job.parts = parts;
-                    }
+                    Ok(parts) if !full => job.parts = parts,
                     Ok(_) => {
                         let text = "too much is waiting for this device; try again later";
                         job.refuse(&self.tag, 0, text);
@@ -128,6 +123,7 @@ impl IconUnit {
             if which(job) {
                 let kept = usize::from(self.under_way && at == 0);
                 job.parts.truncate(kept);
+                job.pieces = None;
                 job.cancelled = true;
             }
         }
@@ -169,7 +165,7 @@ impl IconUnit {
                 job.silent = 0;
                 job.parts.push_front(part);
             }
-            Some(part) => job.answered(&self.tag, &part, query, report, at),
+            Some(part) => job.answered(&self.tag, self.map, &part, query, report, at),
             None => {}
         }
         self.settle();
@@ -197,56 +193,115 @@ impl IconUnit {
 }
 
 impl Job {
-    fn answered(&mut self, tag: &str, part: &Part, query: &Query, report: &Report, at: Micros) {
+    fn answered(
+        &mut self,
+        tag: &str,
+        map: Option<&DeviceMap>,
+        part: &Part,
+        query: &Query,
+        report: &Report,
+        at: Micros,
+    ) {
+        self.silent = match report.outcome {
+            Outcome::Silence => self.silent.saturating_add(1),
+            _ => 0,
+        };
+        if !self.is_taken_apart(map, part, query, report) {
+            self.tell(tag, part.step, query, report, at);
+        }
+        self.next_piece(tag, at);
+        if self.silent >= SILENT && !self.parts.is_empty() {
+            let text = "not asked for, since the device does not answer";
+            self.give_up(tag, Outcome::Silence, text, at);
+        }
+        let done = self.ok.saturating_add(self.failed);
+        let left = u32::try_from(self.parts.len()).unwrap_or(u32::MAX);
+        self.out.say(IconNews::Progress {
+            id: self.id,
+            device: tag.to_owned(),
+            done,
+            total: done.saturating_add(left),
+            text: self.parts.front().map_or_else(String::new, Part::words),
+        });
+    }
+
+    /// True if what was refused is asked for in parts, or was such a part of a block.
+    fn is_taken_apart(
+        &mut self,
+        map: Option<&DeviceMap>,
+        part: &Part,
+        query: &Query,
+        report: &Report,
+    ) -> bool {
+        match (query, report.code, &mut self.pieces) {
+            // Illegal address or value.
+            (Query::File(file), Some(ILLEGAL_ADDRESS | 3), _) if file.spans().len() > 1 => {
+                for file in file.split().into_iter().rev() {
+                    let part = Part::new(part.step, Query::File(file));
+                    self.parts.push_front(part);
+                }
+                true
+            }
+            (Query::Read(read), Some(ILLEGAL_ADDRESS), Some(pieces)) => {
+                pieces.refused(map, *read, &report.text);
+                true
+            }
+            (Query::Read(read), Some(ILLEGAL_ADDRESS), None) if !self.cancelled => {
+                self.pieces = Pieces::new(map, part.step, *read, &report.text);
+                self.pieces.is_some()
+            }
+            (_, None, Some(pieces)) if report.outcome == Outcome::Ok => {
+                pieces.answered();
+                false
+            }
+            _ => false,
+        }
+    }
+
+    /// Goes on with the block that is asked for in pieces; after the last of them it tells what the
+    /// device has not.
+    fn next_piece(&mut self, tag: &str, at: Micros) {
+        let Some(pieces) = &mut self.pieces else {
+            return;
+        };
+        let step = pieces.step;
+        if let Some(read) = pieces.next() {
+            self.parts.push_front(Part::new(step, Query::Read(read)));
+        } else if let Some(pieces) = self.pieces.take() {
+            let (lost, text) = pieces.lost();
+            let refusal = Report {
+                outcome: Outcome::Exception,
+                text,
+                pdu: None,
+                code: Some(ILLEGAL_ADDRESS),
+            };
+            for read in lost {
+                self.tell(tag, step, &Query::Read(read), &refusal, at);
+            }
+        }
+    }
+
+    /// Tells what came of a request.
+    fn tell(&mut self, tag: &str, step: u32, query: &Query, report: &Report, at: Micros) {
         let request = query.pdu();
         let response = match (&report.pdu, report.code) {
             (Some(pdu), _) => hex(pdu),
             (None, Some(code)) => hex(&[request.first().copied().unwrap_or(0) | 0x80, code]),
             (None, None) => String::new(),
         };
-        // Illegal address or value.
-        let blames_a_part = matches!(report.code, Some(2 | 3));
-        let one_of_several = match query {
-            Query::File(file) if blames_a_part && file.spans().len() > 1 => file.split(),
-            _ => Vec::new(),
-        };
-        self.silent = match report.outcome {
-            Outcome::Silence => self.silent.saturating_add(1),
-            _ => 0,
-        };
-        if one_of_several.is_empty() {
-            match report.outcome {
-                Outcome::Ok => self.ok = self.ok.saturating_add(1),
-                _ => self.failed = self.failed.saturating_add(1),
-            }
-            self.out.send(IconNews::Exchange {
-                id: self.id,
-                device: tag.to_owned(),
-                step: part.step,
-                request: hex(&request),
-                response,
-                outcome: report.outcome,
-                text: report.text.clone(),
-                at_us: at.get(),
-            });
-        } else {
-            let more = u32::try_from(one_of_several.len()).unwrap_or(0);
-            self.total = self.total.saturating_add(more).saturating_sub(1);
-            for file in one_of_several.into_iter().rev() {
-                self.parts
-                    .push_front(Part::new(part.step, Query::File(file)));
-            }
+        match report.outcome {
+            Outcome::Ok => self.ok = self.ok.saturating_add(1),
+            _ => self.failed = self.failed.saturating_add(1),
         }
-        if self.silent >= SILENT && !self.parts.is_empty() {
-            let text = "not asked for, since the device does not answer";
-            self.give_up(tag, Outcome::Silence, text, at);
-        }
-        self.out.say(IconNews::Progress {
+        self.out.send(IconNews::Exchange {
             id: self.id,
             device: tag.to_owned(),
-            done: self.ok.saturating_add(self.failed),
-            total: self.total,
-            text: self.parts.front().map_or_else(String::new, Part::words),
+            step,
+            request: hex(&request),
+            response,
+            outcome: report.outcome,
+            text: report.text.clone(),
+            at_us: at.get(),
         });
     }
 
@@ -267,6 +322,7 @@ impl Job {
             });
         }
         self.parts.clear();
+        self.pieces = None;
     }
 
     fn refuse(&mut self, tag: &str, step: u32, text: &str) {
@@ -291,84 +347,4 @@ impl Job {
             failed: self.failed,
         });
     }
-}
-
-impl Part {
-    /// True if the device was busy, and not too often yet.
-    fn is_again(&self, report: &Report) -> bool {
-        report.code == Some(BUSY) && self.busy < BUSY_TRIES
-    }
-
-    fn new(step: u32, query: Query) -> Self {
-        Self {
-            step,
-            query,
-            busy: 0,
-            not_before: None,
-        }
-    }
-
-    /// What is asked, for people.
-    fn words(&self) -> String {
-        match &self.query {
-            Query::Read(read) => {
-                let (first, count) = (read.start.get(), read.count());
-                format!("{count} from address {first}")
-            }
-            Query::File(file) => file.spans().first().map_or_else(String::new, |span| {
-                let more = if file.spans().len() > 1 {
-                    " and more"
-                } else {
-                    ""
-                };
-                format!("file {}, record {}{more}", span.file, span.start)
-            }),
-            Query::Identity => "identity".to_owned(),
-            Query::Diagnostic(sub) => format!("counter {sub}"),
-        }
-    }
-}
-
-/// The requests that steps take; an error is the index of a step that can't be read.
-fn parts(steps: &[IconStep]) -> Result<VecDeque<Part>, u32> {
-    let mut parts = VecDeque::new();
-    let mut files: Vec<(u32, Span)> = Vec::new();
-    for (step, what) in (0_u32..).zip(steps) {
-        let query = match *what {
-            IconStep::File { file, start, count } => {
-                let legal = u32::from(start) + u32::from(count) <= 10_000;
-                if count == 0 || !legal {
-                    return Err(step);
-                }
-                files.push((step, Span::new(file, start, count)));
-                continue;
-            }
-            IconStep::Block(block) => Query::Read(block.read().ok_or(step)?),
-            IconStep::Identity => Query::Identity,
-            IconStep::Diagnostic { sub_function } if is_counter(sub_function) => {
-                Query::Diagnostic(sub_function)
-            }
-            IconStep::Diagnostic { .. } => return Err(step),
-        };
-        parts.extend(file_parts(&files));
-        files.clear();
-        parts.push_back(Part::new(step, query));
-    }
-    parts.extend(file_parts(&files));
-    Ok(parts)
-}
-
-/// Requests for stretches of files, each with the step of its first group.
-fn file_parts(files: &[(u32, Span)]) -> Vec<Part> {
-    let step_of = |read: &FileRead| {
-        let first = read.spans().first()?;
-        let holds = |s: &Span| {
-            s.file == first.file && s.start <= first.start && u32::from(first.start) < s.end()
-        };
-        files.iter().find(|(_, s)| holds(s)).map(|(step, _)| *step)
-    };
-    plan::plan(files.iter().map(|(_, span)| *span))
-        .into_iter()
-        .map(|read| Part::new(step_of(&read).unwrap_or(0), Query::File(read)))
-        .collect()
 }

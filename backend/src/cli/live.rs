@@ -97,13 +97,16 @@ impl Where {
         let (Some(device), Some((bus, at))) = (found, plant.device(&tag)) else {
             return Err(format!("there is no device \"{tag}\" in the configuration"));
         };
+        let mut guess = None;
         let model = match device.device {
             _ if self.device.is_none() && self.kind == Kind::Auto => {
-                let guess = which(bus, at)
+                let found = which(bus, at)
                     .await
                     .map_err(|why| format!("{tag}: {why}"))?;
-                eprintln!("{tag}: {}", guess.why);
-                guess.model.ok_or("say which model it is, with --kind")?
+                eprintln!("{tag}: {}", found.why);
+                let model = found.model;
+                guess = Some(found);
+                model.ok_or("say which model it is, with --kind")?
             }
             Device::Icon3000v2 => Model::Icon3000v2,
             Device::Icon3000 => Model::Icon3000,
@@ -117,6 +120,7 @@ impl Where {
         let mut empty = Snapshot::new(model, device.unit, &tag);
         empty.tool = concat!("valvescope ", env!("CARGO_PKG_VERSION")).to_owned();
         empty.taken = now();
+        empty.guess = guess;
         let begun = Instant::now();
         let progress = std::io::stderr().is_terminal();
         let taken = take(bus, at, empty, |done, total, what| {

@@ -1,7 +1,7 @@
 use super::*;
 use axum::extract::ws::Utf8Bytes;
 use shared::device::Device;
-use shared::proto::{Block, TableName};
+use shared::proto::{Block, IconStep, TableName};
 use tokio::sync::mpsc;
 
 const CLIENT: ClientId = ClientId(1);
@@ -132,6 +132,107 @@ fn a_refused_request_is_asked_for_in_parts() {
     };
     assert_eq!((*a, *b), (Outcome::Ok, Outcome::Exception));
     assert_eq!(response, "9402");
+}
+
+/// What was told of requests: request, and the code of a refusal.
+fn told(from: &mut mpsc::Receiver<Utf8Bytes>) -> Vec<(String, String)> {
+    let exchange = |news| match news {
+        IconNews::Exchange {
+            request, response, ..
+        } => Some((request, response)),
+        _ => None,
+    };
+    news(from).into_iter().filter_map(exchange).collect()
+}
+
+/// A device that has everything but what lies within these holding registers; asked for this block.
+fn ask_without(
+    gone: core::ops::Range<u16>,
+    start: u16,
+    count: u16,
+) -> (usize, Vec<(String, String)>) {
+    let (out, mut from) = outlet();
+    let mut unit = unit();
+    let block = Block {
+        table: TableName::Holding,
+        start,
+        count,
+    };
+    unit.ask(CLIENT, read(vec![IconStep::Block(block)]), out);
+    let mut requests = 0;
+    while let Some(query) = unit.take() {
+        requests += 1;
+        let Query::Read(read) = &query else {
+            panic!("{query:?}");
+        };
+        let first = read.start.get();
+        let report = if first < gone.end && gone.start < first + read.count() {
+            report(Outcome::Exception, None, Some(2))
+        } else {
+            good(&[3])
+        };
+        unit.reply(&query, &report, Micros::new(5));
+    }
+    (requests, told(&mut from))
+}
+
+/// Reading E84: firmware before 2.03 has no HR 3460 to 3473, and refuses what holds them. Around them
+/// are a curve of 64 registers from 3392, four reserved ones and the level logged in, HR 3480.
+#[test]
+fn a_refused_block_is_asked_for_in_pieces() {
+    let (requests, told) = ask_without(3460..3474, 3392, 89);
+    let told: Vec<_> = told.iter().map(|(q, a)| (q.as_str(), a.as_str())).collect();
+    assert_eq!(
+        told,
+        [
+            ("030D400040", "03"),
+            ("030D980001", "03"),
+            ("030D84000E", "8302"),
+        ],
+        "the failure comes last"
+    );
+    // The whole; 3392 to 3455; 3460 to 3480, and its two parts.
+    assert_eq!(requests, 5);
+}
+
+/// Of a block of which the device has nothing, eight pieces are tried, and one failure tells of all.
+#[test]
+fn a_block_that_is_not_there_costs_few_requests() {
+    let (requests, told) = ask_without(0..4000, 3615, 60);
+    assert_eq!(requests, 9);
+    assert_eq!(told, [("030E1F003C".to_owned(), "8302".to_owned())]);
+    // One row alone, as those that tell the model, is one request.
+    assert_eq!(ask_without(0..4000, 3480, 1).0, 1);
+}
+
+/// Cancelled while pieces are left, they are neither asked for nor said to be refused.
+#[test]
+fn cancelling_ends_between_pieces() {
+    let (out, mut from) = outlet();
+    let mut unit = unit();
+    let block = Block {
+        table: TableName::Holding,
+        start: 3392,
+        count: 89,
+    };
+    unit.ask(CLIENT, read(vec![IconStep::Block(block)]), out.clone());
+    let refused = report(Outcome::Exception, None, Some(2));
+    step(&mut unit, &refused);
+    let query = unit.take().unwrap();
+    unit.ask(CLIENT, IconAsk::Cancel { id: 7 }, out);
+    unit.reply(&query, &good(&[3]), Micros::new(1));
+    assert!(unit.take().is_none() && unit.due(Instant::now()).is_none());
+    assert!(matches!(
+        news(&mut from)[..],
+        [
+            IconNews::Exchange { .. },
+            IconNews::Done {
+                ok: 1,
+                failed: 0,
+                ..
+            }
+        ]
+    ));
 }
 
 /// Table 50: a busy device is asked again later, three times; a request for several files is not

@@ -1,7 +1,7 @@
 //! Who the device is: what function 17, the registers and the cards say, and whether they agree.
 
-use shared::address::{Address, Table};
-use shared::icon3000::identity::{Fact, PROBES, REPORT, Report, detect, facts};
+use shared::address::Table;
+use shared::icon3000::identity::{Fact, REPORT, Report, facts};
 use shared::icon3000::model::READINGS;
 use shared::icon3000::say;
 use shared::map::row::Row;
@@ -10,8 +10,8 @@ use shared::value::Value;
 
 use super::tools::{read_at, when};
 use super::{heading, reading};
-use crate::actuator::state::dossier::{Dossier, Subject};
-use crate::actuator::state::saved::model;
+use crate::actuator::state::dossier::Dossier;
+use crate::actuator::state::saved::{guess, model};
 use crate::actuator::state::wanted::within;
 use crate::markup::Markup;
 
@@ -41,7 +41,7 @@ pub fn is_told(row: &Row) -> bool {
 pub fn identity(html: &mut Markup, dossier: &Dossier, now: i64) {
     let pdu = dossier.identity.as_ref().map(|a| a.pdu.as_slice());
     let report = pdu.and_then(Report::of_pdu);
-    which(html, dossier, report.as_ref());
+    which(html, dossier);
     let Some(model) = model(dossier.device) else {
         return;
     };
@@ -133,19 +133,8 @@ fn more(dossier: &Dossier, facts: &mut Vec<Fact>) {
 const TORQUE: (&str, &str) = ("nominal_torque", "Nominal torque or thrust");
 
 /// Which model it is, and why.
-fn which(html: &mut Markup, dossier: &Dossier, report: Option<&Report>) {
-    // A register that answers is known; one that is not there is refused with exception 02.
-    let refused = |start: u16| {
-        let known = dossier.image.cell(Table::Holding, Address::new(start));
-        let failure = dossier.failed.get(&Subject::Block(3, start));
-        match (known, failure) {
-            (Some(_), _) => Some(false),
-            (_, Some(failure)) if failure.code == 2 => Some(true),
-            _ => None,
-        }
-    };
-    let [beyond_3473, beyond_21] = PROBES.map(refused);
-    let guess = detect(&dossier.image, report, beyond_3473, beyond_21);
+fn which(html: &mut Markup, dossier: &Dossier) {
+    let guess = guess(dossier);
     html.open("p", &[("class", "icon-lead"), ("data-testid", "model")]);
     match guess.model {
         Some(model) => {
@@ -281,6 +270,7 @@ mod tests {
     use super::*;
     use crate::actuator::markup::rows::tests::device;
     use crate::actuator::state::logs::tests::put;
+    use shared::icon3000::identity::PROBES;
 
     fn drawn(dossier: &Dossier) -> String {
         let mut html = Markup::new();
@@ -365,6 +355,14 @@ mod tests {
             html.contains("It is an <b class=\"\">ICON3000v2</b>"),
             "{html}"
         );
+        let mut opened = Dossier::new("x", shared::device::Device::Icon3000);
+        opened.guess = Some(shared::icon3000::identity::Guess {
+            model: Some(shared::map::row::Model::Icon3000),
+            why: "Its file says so.".to_owned(),
+        });
+        let html = drawn(&opened);
+        assert!(html.contains("It is an <b class=\"\">ICON3000</b>. "));
+        assert!(html.contains("Its file says so."), "{html}");
     }
 
     /// HR 3074 says 500 Nm; HR 3784 (reading E04: 1 is Nm) and 3785 say 400 Nm. HR 3772 is hardware

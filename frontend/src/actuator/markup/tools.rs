@@ -2,7 +2,7 @@
 
 use shared::map::row::Row;
 
-use crate::actuator::state::dossier::{Dossier, Failure, Subject};
+use crate::actuator::state::dossier::{CHANGED, Dossier, Failure, Subject};
 use crate::actuator::state::saved::gaps;
 use crate::actuator::store::Site;
 use crate::chart::time::stamp;
@@ -143,9 +143,14 @@ fn failed_one(html: &mut Markup, subject: Subject, failure: &Failure) {
     );
     html.severity(shared::problem::Severity::Warning);
     html.text(" ").node("b", "", &name);
-    html.text(&format!(": the device {}", outcome(failure.outcome)));
-    if !failure.text.is_empty() {
-        html.text(&format!(" ({})", failure.text));
+    html.text(": ");
+    if failure.text == CHANGED {
+        html.text(CHANGED);
+    } else {
+        html.text("the device ").text(outcome(failure.outcome));
+        if !failure.text.is_empty() {
+            html.text(&format!(" ({})", failure.text));
+        }
     }
     html.text(".").close("li");
 }

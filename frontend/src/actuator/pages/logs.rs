@@ -66,7 +66,8 @@ pub(super) fn LogsPage() -> impl IntoView {
         store.with(|d| {
             table.with(|t| logs::status(html, d, t, count.get()));
             tools::failures(html, d, |s| match s {
-                Subject::File(file) => file == log,
+                // That it changed stands with its problems.
+                Subject::File(file) => file == log && !d.changed(file),
                 // The clock, and the logs in registers.
                 Subject::Block(3, 15 | 3023 | 3090) | Subject::Block(4, 45) => true,
                 _ => false,

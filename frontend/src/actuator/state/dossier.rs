@@ -1,19 +1,21 @@
 //! Everything that was read of a device: registers, files, identity, counters, and what failed.
 
+mod files;
+
 use std::collections::BTreeMap;
 
 use shared::address::{Address, Table};
 use shared::capture::Micros;
 use shared::device::Device;
+use shared::icon3000::Span;
+use shared::icon3000::identity::Guess;
 use shared::icon3000::plan::Probe;
-use shared::icon3000::records::groups;
-use shared::icon3000::{FileRead, Files, Log, Records, Span};
 use shared::image::Image;
 use shared::map::row::{Access, DeviceMap, Kind, Row};
 use shared::proto::{IconStep, Outcome, TableName};
 
 use super::logs::moment;
-use super::wanted::LIMITS;
+use super::wanted::{LIMITS, RUNS, stored};
 
 /// A record of a file, and when it was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +43,14 @@ pub struct Failure {
     pub again: bool,
 }
 
+impl Failure {
+    /// True if it is not asked for again in a read that began at a time.
+    #[must_use]
+    pub const fn is_final(&self, since: u64) -> bool {
+        self.at >= since && !self.again
+    }
+}
+
 /// An answer as it came.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
@@ -58,6 +68,9 @@ pub struct Reading {
     /// When, in microseconds.
     pub at: u64,
 }
+
+/// What a log is said to have failed with whose head was another one in the end.
+pub const CHANGED: &str = "the log changed while it was read; read it again";
 
 /// Readings of a counter that are kept.
 const READINGS: usize = 720;
@@ -121,6 +134,10 @@ pub struct Dossier {
     pub failed: BTreeMap<Subject, Failure>,
     /// How far the file is known whose length nothing tells, and since when.
     pub probe: Option<(Probe, u64)>,
+    /// Logs of which more than the head was read, but the head not once more after that.
+    pub unchecked: Vec<u16>,
+    /// Which model a file says it is, and why.
+    pub guess: Option<Guess>,
 }
 
 impl Dossier {
@@ -162,15 +179,35 @@ impl Dossier {
             }
             &[8, high, low, ..] => self.counter(u16::from_be_bytes([high, low]), response, at),
             [0x14, ..] => self.file_answer(request, response, at),
-            _ => self
-                .image
-                .absorb(request, response, Micros::new(at))
-                .map(|(table, start, _)| Subject::Block(table.read_function(), start.get())),
+            _ => self.registers(request, response, at),
         };
         if let Some(subject) = taken {
             self.failed.remove(&subject);
         }
         taken.is_some()
+    }
+
+    fn registers(&mut self, request: &[u8], response: &[u8], at: u64) -> Option<Subject> {
+        let at = Micros::new(at);
+        let (table, start, count) = self.image.absorb(request, response, at)?;
+        let (function, start) = (table.read_function(), start.get());
+        // What was refused as part of it is known now.
+        let known = |s: &Subject| match *s {
+            Subject::Block(f, at) => f == function && at >= start && at - start < count,
+            _ => false,
+        };
+        self.failed.retain(|subject, _| !known(subject));
+        // Curves beyond those that are stored are left from before.
+        for ((first, most), stored) in RUNS.into_iter().zip(stored(self)) {
+            if let Some(stored) = stored {
+                let gone = first + stored + 1..=first + most;
+                for file in gone {
+                    self.files.remove(&file);
+                    self.failed.remove(&Subject::File(file));
+                }
+            }
+        }
+        Some(Subject::Block(function, start))
     }
 
     fn counter(&mut self, sub: u16, response: &[u8], at: u64) -> Option<Subject> {
@@ -189,46 +226,6 @@ impl Dossier {
             readings.remove(0);
         }
         Some(Subject::Diagnostic(sub))
-    }
-
-    /// The response repeats neither file nor record; both are in the request. All groups fit what
-    /// was asked for, or nothing is taken.
-    fn file_answer(&mut self, request: &[u8], response: &[u8], at: u64) -> Option<Subject> {
-        let asked = FileRead::of_pdu(request)?;
-        let groups = groups(response)?;
-        let mut pairs = asked.spans().iter().zip(&groups);
-        let fits = pairs.all(|(span, words)| words.len() == usize::from(span.count));
-        if !fits || groups.len() != asked.spans().len() {
-            return None;
-        }
-        for (span, words) in asked.spans().iter().zip(groups) {
-            let kept = self.files.entry(span.file).or_default();
-            let first = usize::from(span.start);
-            if kept.len() < first + words.len() {
-                kept.resize(first + words.len(), None);
-            }
-            for (record, word) in kept.iter_mut().skip(first).zip(words) {
-                *record = Some(Record { word, at });
-            }
-            self.failed.remove(&Subject::File(span.file));
-            self.probed(*span, true, at);
-        }
-        asked.spans().first().map(|span| Subject::File(span.file))
-    }
-
-    /// Goes on in the file whose length nothing tells, if that is what was asked for.
-    fn probed(&mut self, span: Span, answered: bool, at: u64) {
-        let anew = Probe::new(LIMITS, 0);
-        let known = self.probe.filter(|_| anew.next() != Some(span));
-        let mut probe = known.map_or(anew, |(probe, _)| probe);
-        if probe.next() == Some(span) {
-            if answered {
-                probe.answered();
-            } else {
-                probe.refused();
-            }
-            self.probe = Some((probe, at));
-        }
     }
 
     /// Notes that something could not be read; `code` is that of an exception, or 0.
@@ -297,38 +294,6 @@ impl Dossier {
         }
     }
 
-    /// The records of a file that were read at a time or later.
-    #[must_use]
-    pub fn records(&self, file: u16, since: u64) -> Records {
-        let kept = self.files.get(&file).map_or(&[][..], Vec::as_slice);
-        let mut records = Records::default();
-        for (at, record) in (0..).zip(kept) {
-            if let Some(record) = record.filter(|r| r.at >= since) {
-                records.put(at, [record.word]);
-            }
-        }
-        records
-    }
-
-    /// The records of all files.
-    #[must_use]
-    pub fn all_files(&self) -> Files {
-        let mut files = Files::default();
-        for &file in self.files.keys() {
-            for (record, word) in self.records(file, 0).iter() {
-                files.entry(file).put(record, [word]);
-            }
-        }
-        files
-    }
-
-    /// A file as values; `None` if nothing of it was read, or if the manual does not describe it.
-    #[must_use]
-    pub fn log(&self, file: u16) -> Option<Log> {
-        let records = self.records(file, 0);
-        (!records.is_empty()).then(|| Log::read(file, &records))?
-    }
-
     /// Seconds that the clock of the device is ahead of ours (UTC), by its registers; its time zone
     /// is not told. `None` if they were not read or hold no time.
     #[must_use]
@@ -342,13 +307,6 @@ impl Dossier {
         Some(then - self.wall(time.at.get()))
     }
 
-    /// When the oldest of the records of a file was read.
-    #[must_use]
-    pub fn read_at(&self, file: u16) -> Option<u64> {
-        let records = self.files.get(&file)?;
-        records.iter().flatten().map(|r| r.at).min()
-    }
-
     /// The latest reading of a counter.
     #[must_use]
     pub fn count(&self, sub: u16) -> Option<Reading> {
@@ -359,6 +317,9 @@ impl Dossier {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::actuator::markup::rows::tests::put as put_registers;
+    use crate::actuator::state::logs::tests::put;
+    use crate::actuator::state::wanted::step_of;
 
     fn empty() -> Dossier {
         Dossier::new("XV-101", Device::Icon3000v2)
@@ -451,6 +412,77 @@ mod tests {
             Some(3610),
             "an hour and 12 s less 2 s"
         );
+    }
+
+    /// An alarm takes 6 bytes behind a head of 2 (section 8.11.1). Two became one, then none.
+    #[test]
+    fn a_log_that_is_shorter_now_keeps_nothing_of_before() {
+        let mut dossier = empty();
+        put(&mut dossier, 2, &[[2].as_slice(), &[7; 6]].concat());
+        put(&mut dossier, 2, &[2]);
+        assert_eq!(dossier.records(2, 0).len(), 7, "as many as before");
+        for head in [1, 0] {
+            put(&mut dossier, 2, &[head]);
+            assert_eq!(dossier.records(2, 0).stretches(), [(0, vec![head])]);
+        }
+    }
+
+    /// Nothing tells how long file 5 is but where the device refuses the next record.
+    #[test]
+    fn file_5_ends_where_it_is_refused() {
+        let mut dossier = empty();
+        put(&mut dossier, 5, &[7; 121]);
+        let refuse = |dossier: &mut Dossier, start, count| {
+            let step = step_of(Span::new(LIMITS, start, count));
+            dossier.fail(step, Outcome::Exception, 2, "illegal data address", 9);
+        };
+        for count in [121, 60, 30] {
+            refuse(&mut dossier, 0, count);
+        }
+        put(&mut dossier, 5, &[8; 15]);
+        assert_eq!(dossier.records(5, 0).len(), 121, "the end is not found yet");
+        for count in [15, 7, 3, 1] {
+            refuse(&mut dossier, 15, count);
+        }
+        assert_eq!(dossier.records(5, 0).stretches(), [(0, vec![8; 15])]);
+    }
+
+    /// HR 3513 counts the partial strokes: two, then one. The reference, file 3000, stays.
+    #[test]
+    fn curves_beyond_those_stored_are_gone() {
+        let mut dossier = empty();
+        for file in [2016, 3000, 3001, 3002, 3016, 3500] {
+            put(&mut dossier, file, &[7]);
+        }
+        let files = |dossier: &Dossier| dossier.files.keys().copied().collect::<Vec<_>>();
+        for file in [3001, 3003] {
+            let step = step_of(Span::new(file, 0, 110));
+            dossier.fail(step, Outcome::Silence, 0, "no answer", 1);
+        }
+        put_registers(&mut dossier, 3513, &[2], 1);
+        let left: Vec<_> = dossier.failed.keys().copied().collect();
+        assert_eq!(left, [Subject::File(3001)]);
+        assert_eq!(files(&dossier), [2016, 3000, 3001, 3002, 3500]);
+        put_registers(&mut dossier, 3513, &[1], 2);
+        assert_eq!(files(&dossier), [2016, 3000, 3001, 3500]);
+    }
+
+    /// A block that was refused, and a part of it, are both known once the block answers.
+    #[test]
+    fn an_answer_mends_what_failed_within_it() {
+        let mut dossier = empty();
+        for (start, count) in [(3450, 30), (3460, 14), (3480, 1)] {
+            let table = TableName::Holding;
+            let step = IconStep::Block(shared::proto::Block {
+                table,
+                start,
+                count,
+            });
+            dossier.fail(step, Outcome::Exception, 2, "illegal data address", 1);
+        }
+        put_registers(&mut dossier, 3450, &[0; 30], 2);
+        let left: Vec<_> = dossier.failed.keys().copied().collect();
+        assert_eq!(left, [Subject::Block(3, 3480)]);
     }
 
     #[test]

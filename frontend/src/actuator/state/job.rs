@@ -1,9 +1,11 @@
 //! Reading under way: how far it is, how long it may take, and what comes next.
 
-use shared::icon3000::FileRead;
+use shared::address::{Address, Table};
+use shared::encode::Read;
+use shared::icon3000::{File, FileRead, Span};
 use shared::proto::{IconNews, IconStep, Outcome};
 
-use super::dossier::Dossier;
+use super::dossier::{CHANGED, Dossier};
 use super::wanted::{Wanted, step_of};
 
 /// What is being read.
@@ -30,6 +32,8 @@ pub struct Job {
     pub text: String,
     /// True once it was told to end.
     pub cancelled: bool,
+    /// True once it only looks whether the logs that it read are still the same.
+    again: bool,
 }
 
 impl Job {
@@ -51,6 +55,7 @@ impl Job {
             before: 0,
             text,
             cancelled: false,
+            again: false,
         })
     }
 
@@ -78,17 +83,23 @@ impl Job {
                 };
                 let (request, response) = (bytes_of(request), bytes_of(response));
                 let ok = *outcome == Outcome::Ok;
-                if ok && dossier.absorb(&request, &response, *at_us) {
+                let take = if self.again {
+                    Dossier::compare
+                } else {
+                    Dossier::absorb
+                };
+                if ok && take(dossier, &request, &response, *at_us) {
                     return false;
                 }
-                let text = if ok {
-                    "The answer does not fit what was asked."
-                } else {
-                    text
-                };
                 let code = match response[..] {
                     [function, code] if function >= 0x80 => code,
                     _ => 0,
+                };
+                let text = match (ok, code) {
+                    (true, _) => "The answer does not fit what was asked.",
+                    // The first entry was there before.
+                    (_, 2) if self.again => CHANGED,
+                    _ => text,
                 };
                 let mut fail = |step| dossier.fail(step, *outcome, code, text, *at_us);
                 match (step, FileRead::of_pdu(&request)) {
@@ -96,6 +107,8 @@ impl Job {
                     (IconStep::File { .. }, Some(read)) => {
                         read.spans().iter().copied().map(step_of).for_each(fail);
                     }
+                    // Of a block that is refused only a part may be.
+                    (IconStep::Block(_), _) => fail(block_of(&request).unwrap_or(step)),
                     _ => fail(step),
                 }
             }
@@ -120,9 +133,16 @@ impl Job {
     /// Goes on with what is still missing, under a new number; false if nothing is, or if it was
     /// told to end.
     pub fn next(&mut self, id: u32, dossier: &Dossier) -> bool {
-        let steps = self.wanted.missing(dossier, self.since);
+        if self.cancelled || self.again {
+            return false;
+        }
+        let mut steps = self.wanted.missing(dossier, self.since);
         // The same again would come to nothing again.
-        if self.cancelled || steps.is_empty() || steps == self.steps {
+        if steps.is_empty() || steps == self.steps {
+            self.again = true;
+            steps = self.heads(dossier);
+        }
+        if steps.is_empty() {
             return false;
         }
         self.id = id;
@@ -130,6 +150,20 @@ impl Job {
         let more = u32::try_from(self.steps.len()).unwrap_or(u32::MAX);
         self.total = self.before.saturating_add(more);
         true
+    }
+
+    /// The heads of the logs that are whole, each with its first entry: the latest, so that a log
+    /// that is full shows too whether it went on meanwhile.
+    fn heads(&self, dossier: &Dossier) -> Vec<IconStep> {
+        let head = |file: &u16| {
+            let layout = File::of(*file)?.layout?;
+            let whole = dossier.records(*file, self.since).is_complete(*file);
+            let count = layout.head_records + layout.entry_records;
+            let entries = dossier.records(*file, 0).get(0) != Some(0);
+            let unchecked = dossier.unchecked.contains(file);
+            (whole && entries && unchecked).then(|| step_of(Span::new(*file, 0, count)))
+        };
+        self.wanted.files.iter().filter_map(head).collect()
     }
 
     /// What is left of it, to go on with later.
@@ -176,6 +210,18 @@ impl Job {
         }
         text
     }
+}
+
+/// The block that a request reads.
+fn block_of(request: &[u8]) -> Option<IconStep> {
+    let &[function, s0, s1, c0, c1] = request else {
+        return None;
+    };
+    let mut tables = Table::ALL.into_iter();
+    let table = tables.find(|t| t.read_function() == function)?;
+    let start = Address::new(u16::from_be_bytes([s0, s1]));
+    let read = Read::new(table, start, u16::from_be_bytes([c0, c1]))?;
+    Some(IconStep::Block(read.into()))
 }
 
 /// Bytes from hexadecimal; empty if that is not what it is.
@@ -252,9 +298,108 @@ mod tests {
             &mut dossier,
         );
         assert!(job.hear(&done(1, 0), &mut dossier));
-        assert!(job.is_whole(&dossier) && !job.next(3, &dossier));
+        assert!(job.is_whole(&dossier));
         assert_eq!(dossier.records(2, 0).len(), 7);
         assert_eq!((job.done, job.total), (3, 3));
+    }
+
+    /// A log with one entry of three records, read whole; then its head and first entry once more,
+    /// answered with these words; without words it is refused.
+    fn looked_at_again(words: &[&str]) -> Dossier {
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        let only_alarms = Wanted {
+            files: vec![2],
+            ..wanted()
+        };
+        let mut job = Job::new(1, only_alarms, &dossier, 50, 0).unwrap();
+        for (count, request, words) in [
+            (3, "140706000200000001", "0001".to_owned()),
+            (4, "140706000200010003", "00070000000C".to_owned()),
+            (0, "140706000200000004", words.concat()),
+        ] {
+            let bytes = words.len() / 2;
+            let good = format!("14{:02X}{:02X}06{words}", bytes + 2, bytes + 1);
+            let (response, outcome) = match bytes {
+                0 => ("9402", Outcome::Exception),
+                _ => (good.as_str(), Outcome::Ok),
+            };
+            job.hear(&exchange(0, request, response, outcome), &mut dossier);
+            assert!(job.hear(&done(1, 0), &mut dossier));
+            assert_eq!(job.next(2, &dossier), count > 0);
+            if count > 0 {
+                // One record of head: the entry is 1 to 3, both together are 0 to 3.
+                let (file, start) = (2, 4 - count);
+                assert_eq!(job.steps(), [IconStep::File { file, start, count }]);
+            }
+        }
+        assert!(job.is_whole(&dossier));
+        assert_eq!(dossier.records(2, 0).get(1), Some(7), "it is only compared");
+        dossier
+    }
+
+    /// A new alarm is one more, or in a log that is full the first of as many.
+    #[test]
+    fn a_log_that_changed_while_it_was_read_is_said() {
+        use crate::actuator::state::logs::Table;
+        use crate::actuator::state::saved::{open, snapshot};
+        let same = ["0001", "0007", "0000", "000C"];
+        let dossier = looked_at_again(&same);
+        assert!(dossier.failed.is_empty() && dossier.unchecked.is_empty());
+        assert!(Table::of(&dossier, 2).problems.is_empty());
+        for (at, word) in [(0, "0002"), (1, "0008"), (3, "000D")] {
+            let mut other = same;
+            other[at] = word;
+            let dossier = looked_at_again(&other);
+            assert_eq!(Table::of(&dossier, 2).problems, [CHANGED]);
+            let saved = snapshot(&dossier, 0).unwrap();
+            assert_eq!(saved.failures.len(), 1);
+            assert_eq!(saved.failures[0].why, CHANGED);
+            let (opened, _) = open("x.json", &saved.to_text()).unwrap();
+            assert_eq!(Table::of(&opened, 2).problems, [CHANGED]);
+        }
+        // Cleared meanwhile, it has no first entry; and then there is nothing to look at again.
+        let mut dossier = looked_at_again(&[]);
+        assert_eq!(Table::of(&dossier, 2).problems, [CHANGED]);
+        let mut job = Job::new(1, wanted(), &dossier, 200, 0).unwrap();
+        for (step, file) in [(0, 2), (1, 3)] {
+            let request = format!("140706000{file}00000001");
+            let mut head = exchange(step, &request, "140403060000", Outcome::Ok);
+            if let IconNews::Exchange { at_us, .. } = &mut head {
+                *at_us = 300;
+            }
+            job.hear(&head, &mut dossier);
+        }
+        assert!(job.hear(&done(2, 0), &mut dossier) && !job.next(2, &dossier));
+        assert!(Table::of(&dossier, 2).problems.is_empty());
+    }
+
+    /// The part of a block that the device has not is told by its own request.
+    #[test]
+    fn a_refused_part_of_a_block_is_the_failure() {
+        use crate::actuator::state::dossier::Subject;
+        use shared::proto::{Block, TableName};
+        let mut dossier = Dossier::new("XV", Device::Icon3000);
+        let block = |start, count| Block {
+            table: TableName::Holding,
+            start,
+            count,
+        };
+        let blocks = Wanted {
+            blocks: vec![block(3459, 15)],
+            ..Wanted::default()
+        };
+        let mut job = Job::new(1, blocks, &dossier, 0, 0).unwrap();
+        let good = exchange(0, "030D830001", "03020007", Outcome::Ok);
+        job.hear(&good, &mut dossier);
+        let refused = exchange(0, "030D84000E", "8302", Outcome::Exception);
+        job.hear(&refused, &mut dossier);
+        let failure = dossier.failed.get(&Subject::Block(3, 3460));
+        assert_eq!(
+            failure.map(|f| f.step),
+            Some(IconStep::Block(block(3460, 14)))
+        );
+        assert!(job.hear(&done(1, 1), &mut dossier));
+        assert!(job.is_whole(&dossier) && !job.next(2, &dossier));
     }
 
     /// One request may hold parts of several files: all of them failed, whichever step it was for;

@@ -14,7 +14,7 @@ use shared::icon3000::{Item, Log};
 use shared::map::row::Row as MapRow;
 use shared::value::{Quality, Value};
 
-use super::dossier::Dossier;
+use super::dossier::{CHANGED, Dossier};
 use super::wanted::LIMITS;
 use crate::chart::ticks::ordered;
 use crate::chart::time::{Civil, stamp};
@@ -131,6 +131,9 @@ impl Table {
         let problem =
             |p: &shared::icon3000::read::RecordProblem| format!("record {}: {}", p.record, p.text);
         table.problems = log.problems.iter().map(problem).collect();
+        if dossier.changed(file) {
+            table.problems.push(CHANGED.to_owned());
+        }
         // Entries beyond what the head announces are left from before.
         let valid = |number: u16| log.stored.is_none_or(|stored| number <= stored);
         for entry in log

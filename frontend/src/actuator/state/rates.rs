@@ -62,27 +62,47 @@ pub fn chart(dossier: &Dossier) -> Option<Chart> {
 /// Thousandths of a percent.
 const THOUSANDTH: Scale = Scale::new(1, 1000, 3);
 
+/// Counters that are read within so many microseconds of each other are of one round.
+const ROUND: u64 = 2_500_000;
+
 fn points(dossier: &Dossier, messages: &[Reading], errors: &[Reading]) -> Vec<Point> {
-    // Each round reads every counter once, so that the readings of one round have one place.
-    messages
-        .windows(2)
-        .zip(errors.windows(2))
-        .filter_map(|(messages, errors)| {
-            let ([m0, m1], [e0, e1]) = (messages, errors) else {
-                return None;
-            };
-            let errors = since(e0.count, e1.count);
-            let all = since(m0.count, m1.count);
+    // Any counter may be missing in any round.
+    let near = |error: &Reading| {
+        let away = |m: &&Reading| m.at.abs_diff(error.at);
+        let nearest = messages.iter().min_by_key(away);
+        (*error, nearest.filter(|m| away(m) <= ROUND).copied())
+    };
+    let rounds: Vec<_> = errors.iter().map(near).collect();
+    let pairs = rounds.windows(2).filter_map(|pair| pair.first_chunk());
+    pairs
+        .map(|&[(e0, m0), (e1, m1)]| {
+            let among = m0.zip(m1).and_then(|(m0, m1)| {
+                let all = counted(m0, m1, u64::MAX)?;
+                Some((counted(e0, e1, all.into())?, all, m0.at, m1.at))
+            });
+            let (errors, all, from, to) = among.unwrap_or((0, 0, e0.at, e1.at));
             let rate = rate(errors, all);
-            Some(Point {
-                from: seconds(dossier.wall(m0.at)),
-                to: seconds(dossier.wall(m1.at)),
+            Point {
+                from: seconds(dossier.wall(from)),
+                to: seconds(dossier.wall(to)),
                 y: rate.map(|r| THOUSANDTH.to_f64(r.into())),
                 text: rate.map_or_else(String::new, |r| THOUSANDTH.apply(r.into()).to_string()),
-                note: format!("{errors} of {all}"),
-            })
+                note: if among.is_some() {
+                    format!("{errors} of {all}")
+                } else {
+                    "not both read, or counted anew".to_owned()
+                },
+            }
         })
         .collect()
+}
+
+/// How far a counter went. `None` if it fell and going round would make it more than `most`, or
+/// than a line carries, 1000 a second: then it began anew.
+fn counted(before: Reading, now: Reading, most: u64) -> Option<u16> {
+    let count = since(before.count, now.count);
+    let most = most.min(now.at.saturating_sub(before.at) / 1000);
+    (now.count >= before.count || u64::from(count) <= most).then_some(count)
 }
 
 #[expect(
@@ -128,5 +148,52 @@ mod tests {
         }
         let refused = &super::chart(&dossier).unwrap().series[1].points[0];
         assert_eq!((refused.y, refused.note.as_str()), (Some(2.0), "1 of 50"));
+    }
+
+    /// The messages of second 5 were not read, nor the errors of second 15. From second 10 to 20
+    /// there were 3 errors among 600 messages.
+    #[test]
+    fn a_counter_that_is_missing_in_a_round_shifts_no_other() {
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        for (count, at) in [(0, 0), (200, 10), (700, 15), (800, 20)] {
+            read(&mut dossier, 11, count, at * 1_000_000);
+        }
+        for (count, at) in [(0, 0), (0, 5), (1, 10), (4, 20)] {
+            read(&mut dossier, 12, count, at * 1_000_000 + 40_000);
+        }
+        let crc = &chart(&dossier).unwrap().series[0].points;
+        let shown: Vec<_> = crc.iter().map(|p| (p.from, p.to, p.y)).collect();
+        // 3 of 600 messages are 0.5 %.
+        assert_eq!(
+            shown,
+            [(0.0, 5.0, None), (5.0, 10.0, None), (10.0, 20.0, Some(0.5))]
+        );
+        assert_eq!(crc[0].note, "not both read, or counted anew");
+        assert_eq!(crc[2].note, "3 of 600");
+    }
+
+    /// With power up the counters begin at 0: 5 errors that become none are no 65531, nor are 900
+    /// messages that become 3 64639. In 5 s a line carries no more than 5000.
+    #[test]
+    fn a_reset_is_a_gap() {
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        for (sub, counts) in [(11, [800, 900, 3, 103]), (12, [0, 5, 0, 1])] {
+            for (count, at) in counts.into_iter().zip(0..) {
+                read(&mut dossier, sub, count, at * 5_000_000);
+            }
+        }
+        let ys = |dossier: &Dossier| -> Vec<_> {
+            let points = chart(dossier).unwrap().series[0].points.clone();
+            points.iter().map(|p| p.y).collect()
+        };
+        assert_eq!(ys(&dossier), [Some(5.0), None, Some(1.0)]);
+        // 65000 messages that become 3 may have gone round, but not with 65531 errors among 539.
+        let mut dossier = Dossier::new("XV", Device::Icon3000v2);
+        for (sub, counts) in [(11, [65_000, 3]), (12, [5, 0])] {
+            for (count, at) in counts.into_iter().zip(0..) {
+                read(&mut dossier, sub, count, at * 100_000_000);
+            }
+        }
+        assert_eq!(ys(&dossier), [None]);
     }
 }

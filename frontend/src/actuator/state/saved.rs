@@ -3,13 +3,14 @@
 use shared::address::{Address, Table};
 use shared::capture::Micros;
 use shared::device::Device;
+use shared::icon3000::identity::{Guess, PROBES, Report, detect};
 use shared::icon3000::snapshot::{Failure as Had, FileProblem, Part, parse};
 use shared::icon3000::{Snapshot, Span};
 use shared::map::row::Model;
 use shared::proto::{Block, IconStep, Outcome};
 use shared::value::Rfc3339;
 
-use super::dossier::{Answer, Dossier, Reading, Record};
+use super::dossier::{Answer, Dossier, Reading, Record, Subject};
 use super::wanted::Wanted;
 use crate::chart::time::Civil;
 use crate::format::count;
@@ -25,6 +26,33 @@ pub struct Opened {
 #[must_use]
 pub fn model(device: Device) -> Option<Model> {
     device.map().map(|map| map.model)
+}
+
+/// Which model a device is by what it answers, or by what its file says of that.
+#[must_use]
+pub fn guess(dossier: &Dossier) -> Guess {
+    if let Some(guess) = &dossier.guess {
+        return guess.clone();
+    }
+    // A register that answers is known; one that is not there, asked for alone, is refused with
+    // exception 02.
+    let refused = |start: u16| {
+        let known = dossier.image.cell(Table::Holding, Address::new(start));
+        let failure = dossier.failed.get(&Subject::Block(3, start));
+        match (known, failure) {
+            (Some(_), _) => Some(false),
+            (_, Some(failure)) if failure.code == 2 && is_alone(failure.step) => Some(true),
+            _ => None,
+        }
+    };
+    let [beyond_3473, beyond_21] = PROBES.map(refused);
+    let pdu = dossier.identity.as_ref().map(|a| a.pdu.as_slice());
+    let report = pdu.and_then(Report::of_pdu);
+    detect(&dossier.image, report.as_ref(), beyond_3473, beyond_21)
+}
+
+const fn is_alone(step: IconStep) -> bool {
+    matches!(step, IconStep::Block(Block { count: 1, .. }))
 }
 
 /// The device of a model.
@@ -49,6 +77,10 @@ pub fn snapshot(dossier: &Dossier, now: i64) -> Option<Snapshot> {
             .image
             .set(table, address, cell.word, Micros::default());
     }
+    // A file from before it was kept stays as it is.
+    let told = |g: &Guess| g.model.is_some() || dossier.identity.is_some();
+    let live = || Some(guess(dossier)).filter(|g| dossier.origin.is_empty() && told(g));
+    snapshot.guess = dossier.guess.clone().or_else(live);
     snapshot.identity = dossier.identity.as_ref().map(|a| a.pdu.clone());
     let counters = dossier.counters.keys();
     snapshot.counters = counters
@@ -90,7 +122,10 @@ pub fn gaps(dossier: &Dossier) -> String {
     let failed = dossier.failed.values().filter(|f| dossier.has(f.step));
     let failed = u64::try_from(failed.count()).unwrap_or(0);
     if failed > 0 {
-        words.push(format!("{} refused or not answered", count(failed, "part")));
+        words.push(format!(
+            "{} refused, changed or not answered",
+            count(failed, "part")
+        ));
     }
     words.join(", ")
 }
@@ -112,6 +147,7 @@ pub fn dossier(snapshot: &Snapshot, name: &str) -> Dossier {
     dossier.unit = snapshot.unit;
     let taken = seconds(&snapshot.taken).and_then(|s| u64::try_from(s).ok());
     dossier.start_wall_ms = taken.unwrap_or(0).saturating_mul(1000);
+    dossier.guess = snapshot.guess.clone();
     dossier.image = snapshot.image.clone();
     let later = seconds(&snapshot.clock_read).zip(seconds(&snapshot.taken));
     let later = later.and_then(|(clock, taken)| u64::try_from(clock - taken).ok());
@@ -203,6 +239,7 @@ pub(crate) mod tests {
     use crate::actuator::markup::rows::tests::put as put_registers;
     use crate::actuator::state::logs::tests::put;
     use shared::icon3000::snapshot::diff;
+    use shared::proto::TableName;
 
     /// A device with something of everything.
     pub(crate) fn device() -> Dossier {
@@ -242,6 +279,32 @@ pub(crate) mod tests {
         let again = snapshot(&after, 0).unwrap();
         assert!(diff(&saved, &again).is_empty());
         assert_eq!(again.to_text(), saved.to_text());
+    }
+
+    /// Reading E84: HR 22 came with the ICON3000, HR 3480 with the v2; that it is refused is not
+    /// among the words of a file.
+    #[test]
+    fn a_file_tells_which_model_it_was_found_to_be() {
+        let mut before = Dossier::new("XV-101", Device::Icon3000);
+        put_registers(&mut before, 22, &[0], 1);
+        let step = IconStep::Block(Block {
+            table: TableName::Holding,
+            start: 3480,
+            count: 1,
+        });
+        before.fail(step, Outcome::Exception, 2, "illegal data address", 1);
+        let found = guess(&before);
+        assert_eq!(found.model, Some(Model::Icon3000));
+        let saved = snapshot(&before, 0).unwrap();
+        let (after, _) = open("xv.json", &saved.to_text()).unwrap();
+        assert_eq!(guess(&after), found);
+        assert_eq!(snapshot(&after, 0).unwrap().to_text(), saved.to_text());
+        // Without it, as in files from before.
+        let mut old = saved;
+        old.guess = None;
+        let after = dossier(&old, "old.json");
+        assert_eq!(guess(&after).model, None);
+        assert_eq!(snapshot(&after, 0).unwrap().guess, None);
     }
 
     /// HR 3023 to 3026 say 2025-12-06 05:46:52, read 12 s after the oldest part, when it was

@@ -4,7 +4,7 @@ use shared::address::{Address, Table};
 use shared::icon3000::Span;
 use shared::icon3000::plan::Probe;
 use shared::map::plan::plan;
-use shared::map::row::Row;
+use shared::map::row::{Access, Kind, Row};
 use shared::proto::{Block, IconStep, MAX_ICON_STEPS};
 
 use super::dossier::{Dossier, Subject};
@@ -41,7 +41,7 @@ const ALWAYS: [u16; 12] = [
 ];
 
 /// Where curves begin, and how many there can be. HR 3511 to 3514 count them in this order.
-const RUNS: [(u16, u16); 4] = [(1000, 100), (2000, 100), (3000, 16), (3500, 16)];
+pub const RUNS: [(u16, u16); 4] = [(1000, 100), (2000, 100), (3000, 16), (3500, 16)];
 
 /// How many curves the device has stored, by HR 3511 to 3514: opening, closing, PST, EFS.
 #[must_use]
@@ -95,16 +95,8 @@ impl Wanted {
     #[must_use]
     pub fn missing(&self, dossier: &Dossier, since: u64) -> Vec<IconStep> {
         let mut steps: Vec<IconStep> = Vec::new();
-        let old_block = |block: &&Block| {
-            let step = IconStep::Block(**block);
-            !gave_up(dossier, Subject::of(step), since) && is_old(dossier, **block, since)
-        };
-        steps.extend(
-            self.blocks
-                .iter()
-                .filter(old_block)
-                .map(|b| IconStep::Block(*b)),
-        );
+        let old_blocks = self.blocks.iter().filter(|b| is_old(dossier, **b, since));
+        steps.extend(old_blocks.map(|b| IconStep::Block(*b)));
         let identity = dossier.identity.as_ref().is_none_or(|a| a.at < since);
         if self.identity && identity && !gave_up(dossier, Subject::Identity, since) {
             steps.push(IconStep::Identity);
@@ -150,9 +142,10 @@ pub fn within(row: &Row, ranges: &[(u16, u16)]) -> bool {
 
 fn gave_up(dossier: &Dossier, subject: Subject, since: u64) -> bool {
     let failure = dossier.failed.get(&subject);
-    failure.is_some_and(|f| f.at >= since && !f.again)
+    failure.is_some_and(|f| f.is_final(since))
 }
 
+/// True if something of a block is to be read. Parts of it may have been refused by themselves.
 fn is_old(dossier: &Dossier, block: Block, since: u64) -> bool {
     let Some(read) = block.read() else {
         return false;
@@ -161,7 +154,28 @@ fn is_old(dossier: &Dossier, block: Block, since: u64) -> bool {
         let address = read.start.checked_add(at);
         let cell = address.and_then(|a| dossier.image.cell(read.table, a));
         cell.is_none_or(|c| c.at.get() < since)
+            && address.is_some_and(|a| is_awaited(dossier, block, a, since))
     })
+}
+
+/// False for a place that failed, or that is not read by itself: between parts of a block.
+fn is_awaited(dossier: &Dossier, block: Block, address: Address, since: u64) -> bool {
+    let at = address.get();
+    let failed = |step: IconStep| match step {
+        IconStep::Block(b) => b.table == block.table && at >= b.start && at - b.start < b.count,
+        _ => false,
+    };
+    let mut failures = dossier.failed.values();
+    if failures.any(|f| f.is_final(since) && failed(f.step)) {
+        return false;
+    }
+    let maps = dossier.device.map().into_iter();
+    let mut row = maps.filter_map(|map| map.row_at(block.table.into(), address));
+    let unread = |row: &Row| {
+        row.kind == Kind::Reserved || matches!(row.access, Access::Absent | Access::WriteOnly)
+    };
+    // What is asked for by itself may be beyond the map.
+    block.count == 1 || !row.any(unread)
 }
 
 /// The parts of a file that are to be read: first its head, then what the head announces.
@@ -335,6 +349,29 @@ mod tests {
         assert_eq!(files(&dossier), [3000, 3001, 3002]);
         dossier.device = Device::Icon3000;
         assert_eq!(files(&dossier), [0; 0], "there are no files before the v2");
+    }
+
+    /// HR 3460 to 3473 came with firmware 2.03 (reading E84). Before, the block around them is
+    /// refused, and the parts of it are read one by one.
+    #[test]
+    fn a_block_is_read_once_its_parts_are() {
+        let mut dossier = dossier();
+        let wanted = Wanted::default().registers(&dossier, &[(3392, 82)]);
+        let all = wanted.missing(&dossier, 1);
+        assert_eq!(all.len(), 1);
+        let mut response = vec![3, 128];
+        response.extend([0; 128]);
+        assert!(dossier.absorb(&[3, 0x0D, 0x40, 0, 64], &response, 9));
+        assert_eq!(wanted.missing(&dossier, 1), all, "3460 is not known");
+        let step = IconStep::Block(Block {
+            table: TableName::Holding,
+            start: 3460,
+            count: 14,
+        });
+        dossier.fail(step, Outcome::Exception, 2, "illegal data address", 9);
+        let left = wanted.missing(&dossier, 1);
+        assert_eq!(left, [], "3456 to 3459 are reserved");
+        assert_eq!(wanted.missing(&dossier, 10), all, "all anew");
     }
 
     #[test]

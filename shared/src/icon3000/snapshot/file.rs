@@ -35,9 +35,12 @@
 //! | `failed` and its place, `why` | `block` (`table`, `start`, `count`), `identity`, `counter` (`sub`) or `file` (`file`, `start`, `count`) that was asked for and not had |
 //!
 //! `took_ms` is `null` where it is not known. After it `clock_read` may follow: when the clock of
-//! the device was read, where that was another time than `taken`. The hash is the SHA-256 of the bytes before the line
-//! that holds it, as this module writes them; a reader writes what it understood once more and
-//! compares, so that other white space does no harm.
+//! the device was read, where that was another time than `taken`. After these `guess` and
+//! `guess_why` may follow: which model the device itself says it is (`null` if that did not tell) and
+//! why in words; they are missing where it was not asked. `device` is the model it was read as.
+//!
+//! The hash is the SHA-256 of the bytes before the line that holds it, as this module writes them; a
+//! reader writes what it understood once more and compares, so that other white space does no harm.
 
 use core::fmt::Write;
 
@@ -90,6 +93,14 @@ impl Snapshot {
         };
         if !self.clock_read.is_empty() {
             let _ = write!(out, ",\n\"clock_read\":{}", Quoted(&self.clock_read));
+        }
+        if let Some(guess) = &self.guess {
+            out.push_str(",\n\"guess\":");
+            let _ = match guess.model {
+                Some(model) => write!(out, "\"{}\"", model.key()),
+                None => out.write_str("null"),
+            };
+            let _ = write!(out, ",\n\"guess_why\":{}", Quoted(&guess.why));
         }
         out.push_str(",\n\"parts\":[");
         let mut parts = Parts { out, first: true };

@@ -14,7 +14,7 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use super::identity::Report;
+use super::identity::{Guess, Report};
 use super::model::{FILES, Numbering};
 use super::plan::Span;
 use super::records::Files;
@@ -45,6 +45,9 @@ pub struct Snapshot {
     /// When the clock of the device was read, in words of RFC 3339; empty if that is not known, as
     /// in snapshots whose parts were all read one after the other.
     pub clock_read: String,
+    /// Which model the device itself says it is, and why; `None` if it was not asked, as when
+    /// somebody chose [`model`](Self::model).
+    pub guess: Option<Guess>,
     /// Coils, inputs and registers.
     pub image: Image,
     /// The response PDU of function 17.
@@ -122,6 +125,7 @@ impl Snapshot {
             taken: String::new(),
             took_ms: None,
             clock_read: String::new(),
+            guess: None,
             image: Image::new(),
             identity: None,
             counters: BTreeMap::new(),

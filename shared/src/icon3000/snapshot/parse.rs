@@ -6,6 +6,7 @@ use super::file::{FORMAT, VERSION};
 use super::{Failure, Part, Snapshot};
 use crate::address::{Address, Table};
 use crate::capture::Micros;
+use crate::icon3000::identity::Guess;
 use crate::icon3000::plan::Span;
 use crate::icon3000::records::RECORDS;
 use crate::json::value::Json;
@@ -203,8 +204,11 @@ fn build(head: &Members, parts: &[(usize, Members)], problems: &mut Problems) ->
         None => problems.say(0, "the version of the format is missing".to_owned()),
     }
     let device = text("device");
-    let icon = [Model::Icon2000v4, Model::Icon3000, Model::Icon3000v2];
-    let Some(model) = Model::from_key(device).filter(|m| icon.contains(m)) else {
+    let of_key = |key: &str| {
+        let icon = [Model::Icon2000v4, Model::Icon3000, Model::Icon3000v2];
+        Model::from_key(key).filter(|m| icon.contains(m))
+    };
+    let Some(model) = of_key(device) else {
         let say =
             format!("\"device\" is {device:?}; icon2000v4, icon3000 or icon3000v2 was expected");
         problems.say(0, say);
@@ -223,6 +227,12 @@ fn build(head: &Members, parts: &[(usize, Members)], problems: &mut Problems) ->
     snapshot.taken = text("taken").to_owned();
     snapshot.took_ms = get(head, "took_ms").and_then(Scalar::number);
     snapshot.clock_read = text("clock_read").to_owned();
+    snapshot.guess = get(head, "guess_why")
+        .and_then(Scalar::text)
+        .map(|why| Guess {
+            model: of_key(text("guess")),
+            why: why.to_owned(),
+        });
     for (at, (line, part)) in (1_usize..).zip(parts) {
         if let Err(why) = take(&mut snapshot, part) {
             let place = if *line > 0 {

@@ -3,6 +3,7 @@
 mod changes;
 
 use super::*;
+use crate::icon3000::identity::Guess;
 use crate::icon3000::plan::FileRead;
 
 /// Registers from `start` as a read would bring them.
@@ -130,6 +131,28 @@ fn the_time_of_the_clock_comes_back() {
     let text = s.to_text();
     assert!(text.contains("\"took_ms\":8120,\n\"clock_read\":\"2026-11-26T23:51:00Z\",\n"));
     assert_eq!(parse(text.as_bytes()), (Some(s), Vec::new()));
+}
+
+/// What the device says of its model is context as the times are: it comes back, and it is no change.
+#[test]
+fn why_it_is_that_model_comes_back() {
+    let mut s = small();
+    for (model, line) in [
+        (Some(Model::Icon3000v2), "\"guess\":\"icon3000v2\""),
+        (None, "\"guess\":null"),
+    ] {
+        let why = "HR 3480 answers.".to_owned();
+        s.guess = Some(Guess { model, why });
+        let text = s.to_text();
+        let lines = format!("8120,\n{line},\n\"guess_why\":\"HR 3480 answers.\",\n\"parts\":[");
+        assert!(text.contains(&lines), "{text}");
+        assert_eq!(parse(text.as_bytes()), (Some(s.clone()), Vec::new()));
+        let (found, problems) = parse(text.replace("3480", "3481").as_bytes());
+        assert!(found.is_some() && problems.len() == 1, "the hash covers it");
+        assert!(diff(&small(), &s).is_empty());
+    }
+    // Files from before it are as they were.
+    assert!(!small().to_text().contains("guess"));
 }
 
 #[test]
