@@ -148,9 +148,12 @@ mod tests {
 
     const WHY: &str = "exception 02: illegal data address";
 
+    /// First register, how many, and why.
+    type Lost = (u16, u16, String);
+
     /// Splits a block of a device that has nothing from `missing` on: what was asked for, and what
-    /// comes of it, as first register, how many, and why.
-    fn split(start: u16, count: u16, missing: u16) -> (Vec<(u16, u16)>, Vec<(u16, u16, String)>) {
+    /// comes of it.
+    fn split(start: u16, count: u16, missing: u16) -> (Vec<(u16, u16)>, Vec<Lost>) {
         let map = Model::Icon3000v2.map();
         let whole = Read::new(Table::Holding, Address::new(start), count).unwrap();
         let mut split = Split::new(map, whole, WHY.to_owned()).unwrap();
