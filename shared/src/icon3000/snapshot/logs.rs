@@ -31,13 +31,18 @@ pub(super) fn compare(first: &Snapshot, second: &Snapshot, out: &mut Diff) {
     }
 }
 
-/// The five latest entries of a log in the registers: code, date and time of each.
+/// The five latest entries of a log in the registers: code, date and time of each. An ICON2000v4 has
+/// them in input registers only, which the others have too.
 fn registers(first: &Snapshot, second: &Snapshot, log: &str, out: &mut Diff) {
     const PARTS: [&str; 3] = ["date", "time", "code"];
+    let table = match first.model.min(second.model) {
+        Model::Icon3000 | Model::Icon3000v2 => Table::Holding,
+        _ => Table::Input,
+    };
     let row = |at: u16, part: &str| {
         let key = format!("{log}_log_{at}_{part}");
         let map = Model::Icon3000v2.map();
-        map.by_key(Table::Holding, &key)
+        map.by_key(table, &key)
     };
     let list = |snapshot: &Snapshot| -> Vec<(u16, String)> {
         (1..=5)
@@ -64,7 +69,7 @@ fn registers(first: &Snapshot, second: &Snapshot, log: &str, out: &mut Diff) {
     let mut added = 0_usize;
     let mut push = |at: u16, text: String, in_second: bool| {
         let Some(row) = row(at, "code") else { return };
-        let path = format!("holding.{}", row.address);
+        let path = format!("{}.{}", table.key(), row.address);
         let label = row.label.split(" - ").next().unwrap_or(row.label);
         if !whole {
             out.only_one.push(OnlyOne {

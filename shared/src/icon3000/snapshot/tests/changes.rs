@@ -202,6 +202,24 @@ fn registers_of_the_log_that_were_not_read_are_no_change() {
     );
 }
 
+/// Table 4: an ICON2000v4 has its log in IR 45 and on; compared with an ICON3000 too.
+#[test]
+fn an_icon2000v4_has_its_log_in_input_registers() {
+    let read = |model: Model, latest: u16| {
+        let mut snapshot = Snapshot::new(model, 1, "XV-101");
+        let mut words = vec![latest, 0x2611, 0x2026, 0x0009, 0x3000];
+        words.resize(25, 0);
+        block(&mut snapshot, 4, 45, &words);
+        snapshot
+    };
+    let was = read(Model::Icon2000v4, 0);
+    for now in [read(Model::Icon2000v4, 11), read(Model::Icon3000, 11)] {
+        let found = told(&was, &now);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("input.45:  → ") && found[0].contains("Main Voltage (11)"));
+    }
+}
+
 /// A reference that was taken anew at the same time and with the same peak still says what changed.
 #[test]
 fn a_reference_says_where_it_differs() {
