@@ -328,17 +328,71 @@ fn faults_are_there_from_the_start() {
             &["--device", "dop", "--fault", "lost-phase"],
             "--fault is for",
         ),
+        (
+            &["--device", "icon2000v4", "--fault", "pst-over-travel"],
+            "--fault pst-over-travel shows in stroke tests",
+        ),
     ] {
-        let output = Command::new(PROGRAM)
-            .args(["simulate", "--listen", "127.0.0.1:0"])
-            .args(options)
-            .output()
-            .unwrap();
-        assert_eq!(code(&output), 2);
-        assert!(
-            text(&output.stderr).contains(said),
-            "{}",
-            text(&output.stderr)
+        refused(
+            &[&["simulate", "--listen", "127.0.0.1:0"], options].concat(),
+            said,
         );
+    }
+    for fault in ["lost-phase", "break-3"] {
+        let options = [
+            "simulate",
+            "--hart",
+            "pty",
+            "--device",
+            "rotork-iq",
+            "--fault",
+            fault,
+        ];
+        refused(&options, "not for --hart");
+    }
+    // An ICON3000 that comes back too slowly in a test says so: bits 9, 11 and 15 of HR 3009.
+    let device = Simulated::start(&["--device", "icon3000", "--fault", "pst-return"]);
+    assert_eq!(code(&device.snapshot(&file, &[])), 0);
+    let old = parse(&fs::read(&file).unwrap()).0.unwrap();
+    let warnings = old.image.cell(Table::Holding, Address::new(3009)).unwrap();
+    assert_eq!(warnings.word, 0x8A00);
+}
+
+/// Runs the program; it must say this on standard error and do nothing.
+fn refused(options: &[&str], said: &str) {
+    let output = Command::new(PROGRAM).args(options).output().unwrap();
+    let why = text(&output.stderr);
+    assert_eq!((code(&output), output.stdout.len()), (2, 0), "{options:?}");
+    assert!(why.contains(said), "{options:?}: {why}");
+}
+
+/// What an option says has an effect, or it is refused.
+#[test]
+fn options_without_effect_are_refused() {
+    let said = "cannot be used with";
+    for option in [
+        &["--kind", "icon3000"][..],
+        &["--unit", "3"],
+        &["--baud", "9600"],
+        &["--mode", "8E1"],
+        &["--ascii"],
+    ] {
+        refused(
+            &[&["snapshot", "--device", "XV-101"], option].concat(),
+            said,
+        );
+        refused(
+            &[&["diff", "a.json", "--device", "XV-101"], option].concat(),
+            said,
+        );
+    }
+    for option in [&["--baud", "9600"][..], &["--mode", "8E1"], &["--ascii"]] {
+        refused(
+            &[&["snapshot", "--host", "127.0.0.1:1"], option].concat(),
+            said,
+        );
+    }
+    for option in [&["--kind", "auto"][..], &["--unit", "3"]] {
+        refused(&[&["diff", "a.json", "b.json"], option].concat(), said);
     }
 }

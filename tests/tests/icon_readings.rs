@@ -340,7 +340,32 @@ const HELD: [(&str, Held); 89] = [
     ),
     (
         "E38",
-        Because("A sentence about the local STOP button, which no register reads or writes."),
+        By(|| {
+            // The command itself comes back in a device only: the simulated one has no local controls.
+            for stops in [row(HR, 3006), row(Table::Coil, 2)] {
+                assert!(stops.note.contains("E38"));
+            }
+            assert_eq!(settled("E38"), Settled::Likely);
+            // Commands wait while it is pressed, not while it is released: HR 3622, function 11 (local
+            // STOP), makes bit 8 of HR 3001 show which.
+            let said = |pressed: u16| {
+                let mut image = Image::new();
+                for (address, word) in [(3622, 11), (3001, pressed << 8)] {
+                    image.set(HR, Address::new(address), word, Micros::default());
+                }
+                let pst = words::pst(V2, &image);
+                let stop = pst
+                    .reasons
+                    .into_iter()
+                    .find(|r| r.key == "local_stop")
+                    .unwrap();
+                (stop.holds, stop.text)
+            };
+            let (holds, text) = said(1);
+            assert_eq!(holds, Some(words::Truth::No));
+            assert!(text.ends_with("the local STOP is pressed."), "{text}");
+            assert_eq!(said(0).0, Some(words::Truth::Yes));
+        }),
     ),
     (
         "E39",

@@ -17,7 +17,7 @@ pub(super) struct Args {
     /// The earlier snapshot.
     first: PathBuf,
     /// The later snapshot; without it, the device that --device, --port or --host names is read.
-    #[arg(conflicts_with_all = ["device", "port", "host"])]
+    #[arg(conflicts_with_all = ["device", "port", "host", "unit", "kind"])]
     second: Option<PathBuf>,
     /// Also print what changes by itself: positions, counters, the clock.
     #[arg(long)]

@@ -29,19 +29,29 @@ pub(super) struct Where {
     #[arg(long, value_name = "ADDRESS")]
     host: Option<String>,
     /// Bits a second of the serial port.
-    #[arg(long, default_value_t = 9600)]
+    #[arg(long, default_value_t = 9600, conflicts_with_all = ["device", "host"])]
     baud: u32,
     /// Data bits, parity and stop bits of the serial port.
-    #[arg(long, default_value = "8E1", value_parser = mode)]
+    #[arg(
+        long,
+        default_value = "8E1",
+        value_parser = mode,
+        conflicts_with_all = ["device", "host"]
+    )]
     mode: Mode,
     /// The serial line speaks Modbus ASCII.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["device", "host"])]
     ascii: bool,
     /// Unit address.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=247))]
+    #[arg(
+        long,
+        default_value_t = 1,
+        value_parser = clap::value_parser!(u8).range(1..=247),
+        conflicts_with = "device"
+    )]
     unit: u8,
-    /// Which model it is; `auto` asks the device. A device of the configuration is what that says.
-    #[arg(long, value_enum, default_value_t = Kind::Auto)]
+    /// Which model it is; `auto` asks the device. With --device the configuration says it.
+    #[arg(long, value_enum, default_value_t = Kind::Auto, conflicts_with = "device")]
     kind: Kind,
 }
 

@@ -228,6 +228,9 @@ pub(super) fn run(args: &Args) -> ExitCode {
         ));
     }
     if let Some(path) = &args.hart {
+        if !args.fault.is_empty() {
+            return refuse("--fault is for an ICON or a --ddc100 network, not for --hart");
+        }
         return block_on(hart::run(
             &args.valve,
             path,
@@ -245,12 +248,19 @@ pub(super) fn run(args: &Args) -> ExitCode {
 async fn simulate(args: &Args) -> ExitCode {
     let baud = args.baud.unwrap_or(BAUD);
     let mut faults = Vec::new();
+    let is_old = args.device == DeviceArg::Icon2000v4;
     for fault in &args.fault {
         match fault {
-            FaultArg::Icon(fault) if Device::from(args.device).is_icon() => faults.push(*fault),
-            FaultArg::Icon(_) => {
+            FaultArg::Icon(_) if !Device::from(args.device).is_icon() => {
                 return refuse("such a --fault is for --device icon3000v2, icon3000, icon2000v4");
             }
+            FaultArg::Icon(fault) if fault.is_of_tests() && is_old => {
+                return refuse(format_args!(
+                    "--fault {} shows in stroke tests; choose --device icon3000v2 or icon3000",
+                    fault.key()
+                ));
+            }
+            FaultArg::Icon(fault) => faults.push(*fault),
             FaultArg::Network(fault) => {
                 return refuse(format_args!("--fault {fault} is one of a --ddc100 network"));
             }

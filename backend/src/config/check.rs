@@ -381,7 +381,7 @@ fn device(
         None if device.is_dop() => Some(Arc::default()),
         None => None,
     };
-    let faults = faults(&raw, simulated && device.is_icon())?;
+    let faults = faults(&raw, device, simulated)?;
     Ok(DeviceConfig {
         tag: tag.clone(),
         device,
@@ -395,10 +395,10 @@ fn device(
 }
 
 /// What is wrong with a simulated ICON.
-fn faults(raw: &raw::Device, simulated: bool) -> Result<Vec<Fault>, Wrong> {
+fn faults(raw: &raw::Device, device: Device, simulated: bool) -> Result<Vec<Fault>, Wrong> {
     let mut faults = Vec::new();
     for key in raw.faults.iter().flatten() {
-        if !simulated {
+        if !(simulated && device.is_icon()) {
             let text = "`faults` is for a simulated icon3000v2, icon3000 or icon2000v4; remove it";
             return wrong(key, text.to_owned());
         }
@@ -407,6 +407,13 @@ fn faults(raw: &raw::Device, simulated: bool) -> Result<Vec<Fault>, Wrong> {
             let text = format!("`faults`: \"{}\" is none of {keys}", key.get_ref());
             return wrong(key, text);
         };
+        if fault.is_of_tests() && device == Device::Icon2000v4 {
+            let text = format!(
+                "`faults`: \"{}\" shows in stroke tests, and an icon2000v4 has none; remove it",
+                fault.key()
+            );
+            return wrong(key, text);
+        }
         faults.push(fault);
     }
     Ok(faults)

@@ -640,4 +640,15 @@ fn a_simulated_icon_may_have_faults() {
     );
     let real = wrong(RTU, "\"lost-phase\"");
     assert!(real.contains("simulated"), "{real}");
+    // Reading E37: of an ICON2000v4 no stroke test is stated.
+    let old = |fault: &str| {
+        let device = icon(fault).replace("icon3000", "icon2000v4");
+        with("kind = \"simulator\"", &device)
+    };
+    assert!(old("\"lost-phase\"").is_ok());
+    let none = old("\"pst-return\"").unwrap_err();
+    assert!(
+        none.contains("pst-return") && none.contains("stroke tests"),
+        "{none}"
+    );
 }

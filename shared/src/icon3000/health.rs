@@ -73,7 +73,14 @@ pub const fn rank(status: Ne107) -> u8 {
     }
 }
 
+/// The set of warnings, and its bit that is set with any of them.
+const WARNINGS: &str = "warnings";
+const GENERAL_WARNING: u16 = 15;
+
 /// The health of a device from what was read of it.
+///
+/// General Warning is a finding only while no warning with a bit of its own is active: then one
+/// without a bit is (reading E50), or one whose bit was not read.
 #[must_use]
 pub fn health(model: Model, image: &Image) -> Health {
     let mut health = Health::default();
@@ -99,6 +106,11 @@ pub fn health(model: Model, image: &Image) -> Health {
         health
             .findings
             .extend(active.map(|meaning| Finding { meaning, row }));
+    }
+    let warns = |f: &Finding| f.meaning.set == WARNINGS;
+    let is_general = |f: &Finding| warns(f) && f.meaning.value == GENERAL_WARNING;
+    if health.findings.iter().any(|f| warns(f) && !is_general(f)) {
+        health.findings.retain(|f| !is_general(f));
     }
     few::sort_by_key(&mut health.findings, |f| rank(f.meaning.status));
     health

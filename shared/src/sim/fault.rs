@@ -86,6 +86,15 @@ impl Fault {
         Self::PstOverTravel,
     ];
 
+    /// True if it shows in stroke tests only, so that an ICON2000v4 can't have it.
+    #[must_use]
+    pub const fn is_of_tests(self) -> bool {
+        matches!(
+            self,
+            Self::PstTravel | Self::PstReturn | Self::PstOverTravel
+        )
+    }
+
     /// The word used on the command line.
     #[must_use]
     pub const fn key(self) -> &'static str {
@@ -181,7 +190,7 @@ impl Icon3000 {
             }
             let stamp = self.stamp();
             match fault.signs().code {
-                0 if fault == Fault::PstReturn && self.is_v2() => self.failed_return(),
+                0 if fault == Fault::PstReturn && self.has_tests() => self.failed_return(),
                 0 => {}
                 code => self.alarms.add(self.wall, stamp, code),
             }

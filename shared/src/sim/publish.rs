@@ -153,8 +153,8 @@ impl Icon3000 {
         let percent = position.checked_div(1000).unwrap_or(0);
         let limit = |store: &Store, at: u16| u32::from(store.get(at));
         let status_3 = bits([
-            self.is_v2() && self.store.get(at::PST_STATUS) & 1 << 4 != 0,
-            self.is_v2() && self.store.get(at::PST_STATUS) & 1 != 0,
+            self.store.get(at::PST_STATUS) & 1 << 4 != 0,
+            self.store.get(at::PST_STATUS) & 1 != 0,
             false,
             true,
             false,

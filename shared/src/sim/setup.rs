@@ -24,6 +24,17 @@ pub(super) fn store(model: Model, tag: &str) -> Store {
     store.set(at::MOTION_INHIBIT, 2);
     store.set(at::FAIL_SAFE_POSITION, 50);
     store.set(at::CHANNEL_MODE, 0);
+    // What stroke tests need; an ICON3000 shows the mode only.
+    for (address, word) in [
+        (at::INTERLOCK_MODE, 1),
+        (at::PST_TRAVEL, 15),
+        (at::PST_PAUSE, 2),
+        (at::MAX_T_PST, 150),
+        (at::MAX_T_RET, 150),
+        (at::MAX_OV_TR, 5),
+    ] {
+        store.set(address, word);
+    }
     let stamp = |year, month, day| Stamp {
         year,
         month,
@@ -106,7 +117,7 @@ fn identity(store: &mut Store, model: Model, tag: &str) {
 
 /// The set-up of an ICON3000v2.
 fn version_2(store: &mut Store) {
-    let settings: [(u16, &[u16]); 20] = [
+    let settings: [(u16, &[u16]); 16] = [
         // Open limit, close limit, position at least and at most, closing, opening, running, alarm.
         (at::RELAY_FUNCTION, &[0, 1, 2, 3, 4, 5, 6, 26]),
         (at::RELAY_CONTACT, &[1; 8]),
@@ -122,10 +133,6 @@ fn version_2(store: &mut Store) {
         (at::ESD_ACTION, &[1]),
         (at::OPEN_TORQUE, &[85]),
         (at::CLOSE_TORQUE, &[90]),
-        (at::PST_TRAVEL, &[15]),
-        (at::MAX_T_PST, &[150]),
-        (at::MAX_T_RET, &[150]),
-        (at::MAX_OV_TR, &[5]),
         // Channel 2 is not connected any more; its counters stand still (order as of channel 1).
         (at::COUNTERS_2, &[4321, 1234, 7, 3, 2, 1]),
         (at::FAIL_SAFE_ENABLED, &[1]),
@@ -138,7 +145,6 @@ fn version_2(store: &mut Store) {
     store.long(at::ENCODER_LIMITS, 40_000);
     store.long(at::ENCODER_LIMITS.saturating_add(2), 1_640_000);
     store.set(at::BATTERY, 91);
-    store.set(at::INTERLOCK_MODE, 1);
     store.date(
         at::NEXT_PST,
         Stamp {

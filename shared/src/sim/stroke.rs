@@ -2,11 +2,16 @@
 //!
 //! Reading E89: the limits are percent of something that is not stated. Here the times are percent of
 //! those of the reference, by travel; the over-travel is percent of the whole stroke.
+//!
+//! An ICON3000 tests as well (tables 2 and 5), by the modes in HR 3027 and 3028. It has registers
+//! neither for the settings of a test nor for what came of it but HR 3003 and 3009, and no files: its
+//! settings here are those that an ICON3000v2 starts with.
 
 use super::drive;
 use super::history::Partial;
 use super::store::at;
 use super::{Fault, Icon3000, Pst, STEP_MS, bit, command};
+use crate::map::row::Model;
 
 /// How far the valve coasts beyond its target, in thousandths of a percent: usually, and when it
 /// goes too far.
@@ -14,6 +19,8 @@ const COAST: u32 = 400;
 const TOO_FAR: u32 = 6_000;
 /// How many times slower a valve is that is slow.
 const SLOW: u32 = 4;
+/// T-PST and T-RET of the reference of an ICON3000 in tenths of a second, and its travel in percent.
+const REFERENCE: ([u16; 2], u16) = ([49, 47], 15);
 
 /// What may come of a test: code of table 39, note 1, and bit of note 4.
 #[derive(Clone, Copy)]
@@ -137,7 +144,11 @@ impl Icon3000 {
     /// True if the way takes longer than the limit in this register allows: percent of the time of
     /// the reference.
     fn is_too_long(&self, way: usize, limit: u16) -> bool {
-        let (times, travel) = self.history.reference_times();
+        let (times, travel) = if self.is_v2() {
+            self.history.reference_times()
+        } else {
+            REFERENCE
+        };
         let time = u64::from(times.get(way).copied().unwrap_or(0));
         let percent = u64::from(self.store.get(limit));
         let allowed = time
@@ -187,7 +198,9 @@ impl Icon3000 {
         self.store.set(at::PST_STATUS, test.status);
         let conditions = at::PST_STATUS.saturating_add(1);
         self.store.long(conditions, test.reset);
-        self.history.test(test, self.wall, baseline);
+        if self.is_v2() {
+            self.history.test(test, self.wall, baseline);
+        }
         let (bits, code) = match test.result {
             4 => (1 << 8 | 1 << 11, 11),
             5 => (1 << 9 | 1 << 11, 12),
@@ -199,6 +212,11 @@ impl Icon3000 {
             let stamp = self.stamp();
             self.warnings.add(self.wall, stamp, code);
         }
+    }
+
+    /// True if it has partial stroke tests; of an ICON2000v4 nothing is stated (reading E37).
+    pub(super) fn has_tests(&self) -> bool {
+        self.model >= Model::Icon3000
     }
 
     /// A test that has just failed because the valve came back too slowly.
@@ -227,7 +245,7 @@ impl Icon3000 {
 
     /// Begins a partial stroke test, if the set-up allows it and the valve is open.
     pub(super) fn begin_test(&mut self) {
-        let allowed = self.is_v2()
+        let allowed = self.has_tests()
             && self.store.get(at::EFS_INPUT_MODE) == 0
             && self.store.get(at::INTERLOCK_MODE) == 1;
         if allowed && self.pst == Pst::Off && self.drive.is_open() {

@@ -1,5 +1,6 @@
 //! What changed in the files: entries and curves move when a new one comes, so they are told by
-//! what they hold and not by where they stand.
+//! what they hold and not by where they stand. Only where both sides were read as a whole is what the
+//! one has and the other has not new or gone; else it is something that only one of them has.
 
 use super::diff::{Change, Diff, OnlyOne};
 use super::{Snapshot, Sort};
@@ -30,17 +31,23 @@ pub(super) fn compare(first: &Snapshot, second: &Snapshot, out: &mut Diff) {
     }
 }
 
-/// The five latest entries of a log in the registers: code, date and time of each.
+/// The five latest entries of a log in the registers: code, date and time of each. An ICON2000v4 has
+/// them in input registers only, which the others have too.
 fn registers(first: &Snapshot, second: &Snapshot, log: &str, out: &mut Diff) {
+    const PARTS: [&str; 3] = ["date", "time", "code"];
+    let table = match first.model.min(second.model) {
+        Model::Icon3000 | Model::Icon3000v2 => Table::Holding,
+        _ => Table::Input,
+    };
     let row = |at: u16, part: &str| {
         let key = format!("{log}_log_{at}_{part}");
         let map = Model::Icon3000v2.map();
-        map.by_key(Table::Holding, &key)
+        map.by_key(table, &key)
     };
     let list = |snapshot: &Snapshot| -> Vec<(u16, String)> {
         (1..=5)
             .filter_map(|at| {
-                let texts: Option<Vec<_>> = ["date", "time", "code"]
+                let texts: Option<Vec<_>> = PARTS
                     .into_iter()
                     .map(|part| say::row(&snapshot.image, row(at, part)?))
                     .collect();
@@ -50,18 +57,34 @@ fn registers(first: &Snapshot, second: &Snapshot, log: &str, out: &mut Diff) {
             })
             .collect()
     };
+    let is_read = |snapshot: &Snapshot| {
+        (1..=5).all(|at| {
+            let bytes = |part| row(at, part).and_then(|r| snapshot.image.bytes(r));
+            PARTS.into_iter().all(|part| bytes(part).is_some())
+        })
+    };
+    let whole = is_read(first) && is_read(second);
     let mut old = list(first);
     let full = old.len() == 5;
     let mut added = 0_usize;
-    let mut push = |at: u16, what: &str, was: String, now: String| {
+    let mut push = |at: u16, text: String, in_second: bool| {
         let Some(row) = row(at, "code") else { return };
+        let path = format!("{}.{}", table.key(), row.address);
+        let label = row.label.split(" - ").next().unwrap_or(row.label);
+        if !whole {
+            out.only_one.push(OnlyOne {
+                path,
+                label: format!("{label}: {text}"),
+                in_second,
+            });
+            return;
+        }
+        let what = if in_second { "new" } else { "gone" };
+        let (was, now) = sides(text, in_second);
         out.changes.push(Change {
             sort: Sort::Log,
-            path: format!("holding.{}", row.address),
-            label: format!(
-                "{} {what}",
-                row.label.split(" - ").next().unwrap_or(row.label)
-            ),
+            path,
+            label: format!("{label} ({what})"),
             was,
             now,
             also: Vec::new(),
@@ -74,13 +97,22 @@ fn registers(first: &Snapshot, second: &Snapshot, log: &str, out: &mut Diff) {
             continue;
         }
         added = added.saturating_add(1);
-        push(at, "(new)", String::new(), text);
+        push(at, text, true);
     }
-    if full && old.len() <= added {
+    if whole && full && old.len() <= added {
         old.clear();
     }
     for (at, text) in old {
-        push(at, "(gone)", text, String::new());
+        push(at, text, false);
+    }
+}
+
+/// What it was and what it is: a text that only one of them has.
+fn sides(text: String, in_second: bool) -> (String, String) {
+    if in_second {
+        (String::new(), text)
+    } else {
+        (text, String::new())
     }
 }
 
@@ -188,45 +220,54 @@ fn said(entry: &Entry) -> String {
 }
 
 fn entries(file: &'static File, number: u16, was: &Log, now: &Log, out: &mut Diff) {
+    let whole = was.complete && now.complete;
     let mut old: Vec<(Vec<u16>, &Entry)> = Vec::new();
-    let whole = |entry: &&Entry, stored: Option<u16>| stored.is_none_or(|n| entry.number <= n);
-    for entry in was.entries.iter().filter(|e| whole(e, was.stored)) {
+    let counts = |entry: &&Entry, stored: Option<u16>| stored.is_none_or(|n| entry.number <= n);
+    for entry in was.entries.iter().filter(|e| counts(e, was.stored)) {
         old.extend(words(entry).map(|w| (w, entry)));
     }
+    let mut push = |entry: &Entry, in_second: bool| {
+        let path = format!("file.{number}.entry[{}]", entry.number);
+        let (name, item, text) = (file.label, lower(file.item), said(entry));
+        if !whole {
+            out.only_one.push(OnlyOne {
+                path,
+                label: format!("{name}: {item}, {text}"),
+                in_second,
+            });
+            return;
+        }
+        let label = if in_second {
+            format!("{name}: new {item}")
+        } else {
+            format!("{name}: {item} gone")
+        };
+        let (was, now) = sides(text, in_second);
+        out.changes.push(change(file, path, label, was, now));
+    };
     let mut added = 0_usize;
-    for entry in now.entries.iter().filter(|e| whole(e, now.stored)) {
+    for entry in now.entries.iter().filter(|e| counts(e, now.stored)) {
         let Some(words) = words(entry) else { continue };
         if let Some(at) = old.iter().position(|(w, _)| *w == words) {
             old.remove(at);
             continue;
         }
         added = added.saturating_add(1);
-        out.changes.push(change(
-            file,
-            format!("file.{number}.entry[{}]", entry.number),
-            format!("{}: new {}", file.label, lower(file.item)),
-            String::new(),
-            said(entry),
-        ));
+        push(entry, true);
     }
     // What a full log lost at its end made room for what came.
     let rolled = |last: u16| was.stored.is_none_or(|n| n == last);
-    if old.len() <= added && old.last().is_some_and(|(_, e)| rolled(e.number)) {
+    if whole && old.len() <= added && old.last().is_some_and(|(_, e)| rolled(e.number)) {
         old.clear();
     }
     for (_, entry) in old {
-        out.changes.push(change(
-            file,
-            format!("file.{number}.entry[{}]", entry.number),
-            format!("{}: {} gone", file.label, lower(file.item)),
-            said(entry),
-            String::new(),
-        ));
+        push(entry, false);
     }
-    let same = was.entries == now.entries;
-    if same
-        && let (Some(a), Some(b)) = (was.stored, now.stored)
+    // Of whole logs the entries tell it.
+    let told = whole && was.entries != now.entries;
+    if let (Some(a), Some(b)) = (was.stored, now.stored)
         && a != b
+        && !told
     {
         out.changes.push(change(
             file,
@@ -283,6 +324,18 @@ fn curves(first: &Snapshot, second: &Snapshot, file: &'static File, out: &mut Di
             })
             .collect()
     };
+    let whole = first.has_all_curves(file) && second.has_all_curves(file);
+    let mut push = |number: u16, text: String, in_second: bool| {
+        if !whole {
+            out.only_one.push(only_one(file, number, in_second));
+            return;
+        }
+        let what = if in_second { "new curve" } else { "curve gone" };
+        let label = format!("{}: {what}", file.label);
+        let (was, now) = sides(text, in_second);
+        let path = format!("file.{number}");
+        out.changes.push(change(file, path, label, was, now));
+    };
     let mut old = list(first);
     let oldest = old.last().map(|(number, ..)| *number);
     let mut added = 0_usize;
@@ -292,20 +345,14 @@ fn curves(first: &Snapshot, second: &Snapshot, file: &'static File, out: &mut Di
             continue;
         }
         added = added.saturating_add(1);
-        let label = format!("{}: new curve", file.label);
-        let path = format!("file.{number}");
-        out.changes
-            .push(change(file, path, label, String::new(), text));
+        push(number, text, true);
     }
     // As in a full log.
-    if old.len() <= added && old.last().map(|(number, ..)| *number) == oldest {
+    if whole && old.len() <= added && old.last().map(|(number, ..)| *number) == oldest {
         old.clear();
     }
     for (number, _, text) in old {
-        let label = format!("{}: curve gone", file.label);
-        let path = format!("file.{number}");
-        out.changes
-            .push(change(file, path, label, text, String::new()));
+        push(number, text, false);
     }
 }
 

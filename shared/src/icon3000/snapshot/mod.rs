@@ -15,7 +15,7 @@ mod tests;
 use std::collections::BTreeMap;
 
 use super::identity::{Guess, Report};
-use super::model::{FILES, Numbering};
+use super::model::{FILES, File, Numbering};
 use super::plan::Span;
 use super::records::Files;
 use crate::address::{Address, Table};
@@ -219,15 +219,13 @@ impl Snapshot {
             let mut failures = self.failures.iter();
             failures.any(|f| matches!(f.part, Part::File(span) if span.file == number))
         };
-        let mut counters = 3511..;
         for file in &FILES {
             let Some(layout) = file.layout else { continue };
             let (mut first, mut last) = (file.first, file.last);
             if file.numbering == Numbering::Curves {
-                let address = Address::new(counters.next().unwrap_or(0));
-                let stored = self.image.cell(Table::Holding, address);
+                let stored = self.curves_stored(file).unwrap_or(0);
                 first = first.saturating_add(1);
-                last = last.min(file.first.saturating_add(stored.map_or(0, |c| c.word)));
+                last = last.min(file.first.saturating_add(stored));
             }
             for number in (first..=last).filter(|n| !failed(*n)) {
                 match self.files.get(number) {
@@ -237,6 +235,25 @@ impl Snapshot {
             }
         }
         holes
+    }
+
+    /// How many curves of a kind are stored besides the reference (HR 3511 to 3514, in the order of
+    /// the files); `None` if that was not read.
+    fn curves_stored(&self, file: &File) -> Option<u16> {
+        let curves = FILES.iter().filter(|f| f.numbering == Numbering::Curves);
+        let (address, _) = (3511..).zip(curves).find(|(_, f)| f.first == file.first)?;
+        let cell = self.image.cell(Table::Holding, Address::new(address))?;
+        Some(cell.word)
+    }
+
+    /// True if every curve of a kind was read that the device says is stored.
+    fn has_all_curves(&self, file: &File) -> bool {
+        let Some(stored) = self.curves_stored(file) else {
+            return false;
+        };
+        let last = file.last.min(file.first.saturating_add(stored));
+        let whole = |n: u16| self.files.get(n).is_some_and(|r| r.is_complete(n));
+        (file.first.saturating_add(1)..=last).all(whole)
     }
 
     fn failed(&self, table: Table, address: Address) -> Option<&str> {

@@ -31,6 +31,32 @@ fn image(words: &[(u16, u16)]) -> Image {
     image
 }
 
+/// HR 3009, bit 15: General Warning stands by itself only while no other bit explains it (reading
+/// E50); so it does in the input register of an ICON2000v4.
+#[test]
+fn a_general_warning_is_told_where_nothing_else_is() {
+    for (word, by_hand) in [
+        (
+            0x8A00,
+            &["pst_error_max_t_ret_t2", "pst_error_pst_failed"][..],
+        ),
+        (0x8001, &["hi_torque_op"]),
+        (0x8000, &["general_warning"]),
+        (0x0000, &[]),
+    ] {
+        let mut old = Image::new();
+        old.set(Table::Input, Address::new(2), word, Micros::default());
+        for (model, seen) in [(V2, image(&[(3009, word)])), (Model::Icon2000v4, old)] {
+            let found = health(model, &seen);
+            let keys: Vec<_> = found.findings.iter().map(|f| f.meaning.key).collect();
+            assert_eq!(keys, by_hand, "{word:04X}");
+        }
+    }
+    let alone = health(V2, &image(&[(3009, 0x8000)]));
+    let words = alone.findings[0].meaning;
+    assert!(words.reason.starts_with("At least one warning is active"));
+}
+
 /// Table 5, HR 3009 to 3011: worst first, whatever the order of the registers; what was not read is
 /// not good.
 #[test]

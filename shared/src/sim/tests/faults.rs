@@ -124,6 +124,78 @@ fn faults_make_tests_fail() {
     assert_eq!(register(&mut icon, 3009), 1 << 15 | 1 << 11 | 1 << 9);
 }
 
+/// Section 12 and table 5, for an ICON3000: bit 5 of HR 3006 and value 5 of HR 3008 start a test while
+/// HR 3027 says 1 (Advanced) and HR 3028 says 0 (PST-EFS). What came of it is in HR 3003 (bit 1
+/// passed, bit 0 aborted), HR 3009 and the log of warnings; it has no files.
+#[test]
+fn an_icon3000_tests_too() {
+    let open = || {
+        let mut icon = idle(Model::Icon3000);
+        write(&mut icon, 3008, command::OPEN);
+        wait(&mut icon, 30);
+        assert_eq!(icon.position(), 1000);
+        icon
+    };
+    for (address, value) in [(3006, 1 << 5), (3008, 5), (0, 5)] {
+        let mut icon = open();
+        let modes = [register(&mut icon, 3027), register(&mut icon, 3028)];
+        assert_eq!(modes, [1, 0]);
+        write(&mut icon, address, value);
+        wait(&mut icon, 5);
+        assert_ne!(register(&mut icon, 3002) & 1 << 15, 0, "HR {address}");
+        assert!((845..=850).contains(&icon.position()), "15 % of travel");
+        wait(&mut icon, 15);
+        assert_eq!(
+            (icon.position(), register(&mut icon, 3002) & 1 << 15),
+            (1000, 0)
+        );
+        assert_eq!(register(&mut icon, 3003) & 0b11, 0b10, "passed");
+        assert_eq!(register(&mut icon, 3009), 0);
+        assert_eq!(
+            icon.answer(&[20, 7, 6, 0x0B, 0xB9, 0, 0, 0, 1]).unwrap(),
+            [0x94, 1]
+        );
+    }
+    // The modes are set on the spot: they cannot be written here.
+    for (home, mode) in [(at::INTERLOCK_MODE, 0), (at::EFS_INPUT_MODE, 1)] {
+        let mut icon = open();
+        icon.store.set(home, mode);
+        write(&mut icon, 3008, command::PST);
+        wait(&mut icon, 5);
+        assert_eq!(icon.position(), 1000, "HR {home}");
+        assert_eq!(register(&mut icon, 3008), 0);
+    }
+    // Tables 5 and 34: bits 8 to 10 with 11 and 15; codes 11 to 13.
+    for (fault, bit, code) in [
+        (Fault::PstTravel, 8, 11),
+        (Fault::PstReturn, 9, 12),
+        (Fault::PstOverTravel, 10, 13),
+    ] {
+        let mut icon = open();
+        icon.set_fault(fault, true);
+        write(&mut icon, 3008, command::PST);
+        wait(&mut icon, 60);
+        let warnings = register(&mut icon, 3009);
+        assert_eq!(warnings, 1 << 15 | 1 << 11 | 1 << bit, "{fault:?}");
+        assert_eq!(register(&mut icon, 3115), code, "{fault:?}");
+        assert!(fault.is_of_tests());
+    }
+    // An alarm ends it.
+    let mut icon = open();
+    write(&mut icon, 3008, command::PST);
+    wait(&mut icon, 2);
+    icon.set_fault(Fault::LostPhase, true);
+    wait(&mut icon, 1);
+    assert_eq!(register(&mut icon, 3003) & 0b11, 0b01, "aborted");
+    // HR 0 of an ICON2000v4 has the value too; that it would test is not stated (reading E37).
+    let mut icon = idle(Model::Icon2000v4);
+    write(&mut icon, 0, command::OPEN);
+    wait(&mut icon, 30);
+    write(&mut icon, 0, command::PST);
+    wait(&mut icon, 5);
+    assert_eq!(icon.position(), 1000);
+}
+
 /// Table 39, note 5: each alarm ends a test that runs as reset (result 3, status bit 4), and its bit
 /// stands in records 116 and 117 and in HR 3517 and 3518.
 #[test]
@@ -202,6 +274,7 @@ fn faults_show_their_bits_and_codes() {
         let fault = Fault::from_key(key).unwrap();
         let mut icon = v2();
         assert_eq!(register(&mut icon, 3001) & 1 << 6, 0);
+        assert!(!fault.is_of_tests());
         icon.set_fault(fault, true);
         assert_ne!(register(&mut icon, address) & 1 << bit, 0, "{key}");
         assert_ne!(register(&mut icon, 3001) & 1 << 6, 0, "{key}: alarm");

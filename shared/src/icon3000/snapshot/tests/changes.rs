@@ -34,24 +34,46 @@ fn with(files: &[(u16, &[u16])]) -> Snapshot {
     snapshot
 }
 
+/// The same, with the number of opening curves that HR 3511 says are stored; of the others none.
+fn stored(curves: u16, files: &[(u16, &[u16])]) -> Snapshot {
+    let mut snapshot = with(files);
+    block(&mut snapshot, 3, 3511, &[curves, 0, 0, 0]);
+    snapshot
+}
+
+/// What only one of them has, as `path second` or `path first`.
+fn apart(first: &Snapshot, second: &Snapshot) -> Vec<String> {
+    let found = diff(first, second);
+    let which = |second| if second { "second" } else { "first" };
+    let only = found.only_one.iter();
+    only.map(|o| format!("{} {}", o.path, which(o.in_second)))
+        .collect()
+}
+
 /// Section 8.11.4: 1001 is the latest, so a new curve moves the others by one.
 #[test]
 fn curves_come_and_go() {
     let (a, b, c) = (torque(30, 1), torque(31, 2), torque(32, 3));
-    let old = with(&[(1000, &a), (1001, &b), (1002, &a)]);
-    let new = with(&[(1000, &a), (1001, &c), (1002, &b), (1003, &a)]);
+    let old = stored(2, &[(1000, &a), (1001, &b), (1002, &a)]);
+    let new = stored(3, &[(1000, &a), (1001, &c), (1002, &b), (1003, &a)]);
     assert_eq!(told(&old, &old), [""; 0]);
     assert_eq!(
         told(&old, &new),
-        ["file.1001:  → 2000-01-04 00:00:00, peak 32 %"]
+        [
+            "holding.3511: 2 → 3",
+            "file.1001:  → 2000-01-04 00:00:00, peak 32 %"
+        ]
     );
     // The other way round it was dropped.
     assert_eq!(
         told(&new, &old),
-        ["file.1001: 2000-01-04 00:00:00, peak 32 % → "]
+        [
+            "holding.3511: 3 → 2",
+            "file.1001: 2000-01-04 00:00:00, peak 32 % → "
+        ]
     );
     // The oldest that made room for a new one is not missed.
-    let rolled = with(&[(1000, &a), (1001, &c), (1002, &b)]);
+    let rolled = stored(2, &[(1000, &a), (1001, &c), (1002, &b)]);
     assert_eq!(
         told(&old, &rolled),
         ["file.1001:  → 2000-01-04 00:00:00, peak 32 %"]
@@ -61,6 +83,141 @@ fn curves_come_and_go() {
         (change.sort, change.sort.is_passing()),
         (Sort::Curve, false)
     );
+}
+
+/// Of two actuators in the same state one was read in part: no curve came and none went, whatever is
+/// missing: the number of them, all of them, one of them, or the end of one.
+#[test]
+fn curves_that_were_not_read_are_no_change() {
+    let (a, b) = (torque(30, 1), torque(31, 2));
+    let whole = stored(2, &[(1000, &a), (1001, &b), (1002, &a)]);
+    let uncounted = with(&[(1000, &a), (1001, &b)]);
+    let none = stored(2, &[(1000, &a)]);
+    let one = stored(2, &[(1000, &a), (1002, &a)]);
+    let cut = stored(2, &[(1000, &a), (1001, &b), (1002, &a[..107])]);
+    for (part, only) in [
+        (
+            uncounted,
+            &[
+                "holding.3511",
+                "holding.3512",
+                "holding.3513",
+                "holding.3514",
+                "file.1002",
+            ][..],
+        ),
+        (none, &["file.1001", "file.1002"]),
+        (one, &["file.1001"]),
+        (cut, &["file.1002"]),
+    ] {
+        assert_eq!(told(&whole, &part), [""; 0]);
+        assert_eq!(told(&part, &whole), [""; 0]);
+        let named = |which: &str| -> Vec<String> {
+            only.iter().map(|path| format!("{path} {which}")).collect()
+        };
+        assert_eq!(apart(&whole, &part), named("first"));
+        assert_eq!(apart(&part, &whole), named("second"));
+    }
+    // Nothing is stored, and nothing was read: that is whole.
+    let emptied = stored(0, &[(1000, &a)]);
+    let gone: Vec<_> = told(&whole, &emptied);
+    assert_eq!(gone.iter().filter(|l| l.starts_with("file.")).count(), 2);
+}
+
+/// Section 8.11.1: record 0 counts the alarms, three records each follow. With the head alone, and
+/// with one alarm of two, nothing is known of the others.
+#[test]
+fn entries_that_were_not_read_are_no_change() {
+    let whole = with(&[(2, &[2, 0x32, 9, 6, 0x31, 8, 11])]);
+    for (part, only) in [
+        (
+            with(&[(2, &[2])]),
+            &["file.2.entry[1]", "file.2.entry[2]"][..],
+        ),
+        (with(&[(2, &[2, 0x32, 9, 6])]), &["file.2.entry[2]"]),
+        (
+            with(&[(2, &[2, 0x32, 9, 6, 0x31, 8])]),
+            &["file.2.entry[2]"],
+        ),
+    ] {
+        assert_eq!(told(&whole, &part), [""; 0]);
+        assert_eq!(told(&part, &whole), [""; 0]);
+        let named = |which: &str| -> Vec<String> {
+            only.iter().map(|path| format!("{path} {which}")).collect()
+        };
+        assert_eq!(apart(&whole, &part), named("first"));
+        assert_eq!(apart(&part, &whole), named("second"));
+        assert!(
+            diff(&part, &whole).only_one[0]
+                .label
+                .starts_with("Alarms Log: alarm, 2000-")
+        );
+    }
+    // The head alone tells that there is one more.
+    let more = with(&[(2, &[3])]);
+    assert_eq!(told(&whole, &more), ["file.2.count: 2 → 3"]);
+}
+
+/// HR 3090 and on: code, date (0xDDMM, 0xYYYY) and time (0x00HH, 0xMMSS), five times. Two alarms are
+/// in it: main voltage (11), and before it the thermostat (2).
+#[test]
+fn registers_of_the_log_that_were_not_read_are_no_change() {
+    let mut words = vec![
+        11, 0x2611, 0x2026, 0x0009, 0x3000, 2, 0x2511, 0x2026, 0x0008, 0x1530,
+    ];
+    words.resize(25, 0);
+    let read = |count: usize| {
+        let mut snapshot = Snapshot::new(Model::Icon3000, 1, "XV-101");
+        block(&mut snapshot, 3, 3090, &words[..count]);
+        snapshot
+    };
+    let whole = read(25);
+    let nothing = Snapshot::new(Model::Icon3000, 1, "XV-101");
+    for (part, only) in [
+        (nothing, &["holding.3090", "holding.3095"][..]),
+        (read(6), &["holding.3095"]),
+        // The last of the 15 values is missing, and it is of no entry.
+        (read(24), &[]),
+    ] {
+        assert_eq!(told(&whole, &part), [""; 0]);
+        assert_eq!(told(&part, &whole), [""; 0]);
+        let named = |which: &str| -> Vec<String> {
+            only.iter().map(|path| format!("{path} {which}")).collect()
+        };
+        assert_eq!(apart(&whole, &part), named("first"));
+        assert_eq!(apart(&part, &whole), named("second"));
+    }
+    // Both whole: one that came is told, and one that went.
+    let mut older = Snapshot::new(Model::Icon3000, 1, "XV-101");
+    let mut before = words[5..].to_vec();
+    before.resize(25, 0);
+    block(&mut older, 3, 3090, &before);
+    let came = told(&older, &whole);
+    assert_eq!(came.len(), 1, "{came:?}");
+    assert!(came[0].starts_with("holding.3090:  → ") && came[0].contains("Main Voltage (11)"));
+    let went = told(&whole, &older);
+    assert!(
+        went[0].ends_with("→ ") && went[0].contains("Main Voltage (11)"),
+        "{went:?}"
+    );
+}
+
+/// Table 4: an ICON2000v4 has its log in IR 45 and on; compared with an ICON3000 too.
+#[test]
+fn an_icon2000v4_has_its_log_in_input_registers() {
+    let read = |model: Model, latest: u16| {
+        let mut snapshot = Snapshot::new(model, 1, "XV-101");
+        let mut words = vec![latest, 0x2611, 0x2026, 0x0009, 0x3000];
+        words.resize(25, 0);
+        block(&mut snapshot, 4, 45, &words);
+        snapshot
+    };
+    let was = read(Model::Icon2000v4, 0);
+    for now in [read(Model::Icon2000v4, 11), read(Model::Icon3000, 11)] {
+        let found = told(&was, &now);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("input.45:  → ") && found[0].contains("Main Voltage (11)"));
+    }
 }
 
 /// A reference that was taken anew at the same time and with the same peak still says what changed.
