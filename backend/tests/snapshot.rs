@@ -249,7 +249,7 @@ fn every_model_says_what_it_is() {
                 .any(|l| l.replace("\":\"", "\": \"").contains(&device_line)),
             "{name}: {head:?}"
         );
-        assert_eq!(saved.contains("5300"), files, "{name}");
+        assert_eq!(saved.contains("\"file\":5300,"), files, "{name}");
         // It was asked, and the file says what it said.
         let guess = |file: &Path| parse(&fs::read(file).unwrap()).0.unwrap().guess;
         let said = guess(&file).unwrap();
