@@ -331,7 +331,8 @@ impl Config {
     }
 
     /// What is served without a configuration: a plant of four valves that is alive, a loop of
-    /// field units whose cable breaks now and then, and two valves on a HART loop.
+    /// field units whose cable breaks now and then, and a HART loop with a valve of
+    /// each family.
     #[must_use]
     pub fn simulated() -> Self {
         let on = |bus: usize, tag: &str, device: Device, unit, description: &str| DeviceConfig {

@@ -51,7 +51,7 @@ struct LineArgs {
     /// Bits a second; 1200 on any real line.
     #[arg(long, default_value_t = 1200, value_parser = clap::value_parser!(u32).range(1200..=115_200))]
     baud: u32,
-    /// Tries beyond the first.
+    /// Tries beyond the first (usually 3; 1 with a gateway).
     #[arg(long, value_parser = clap::value_parser!(u8).range(0..=10))]
     retries: Option<u8>,
     /// Longest silence within a frame, in milliseconds, as the port delivers it (usually 100).

@@ -19,7 +19,8 @@ pub(super) struct Args {
     /// Which device.
     #[arg(long, value_enum, default_value_t = DeviceArg::Icon3000v2)]
     device: DeviceArg,
-    /// What to print: readable text, one JSON object a line, or a table for spreadsheets.
+    /// What to print: readable text, one JSON object a line, or a table for spreadsheets. A Rotork
+    /// device is printed as JSON only.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// Diagnostic objects: also the layouts that the number of registers can choose.

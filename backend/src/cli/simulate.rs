@@ -55,7 +55,7 @@ pub(super) struct Args {
     /// Parity of the serial port.
     #[arg(long, value_enum, default_value_t = ParityArg::Even)]
     parity: ParityArg,
-    /// Which device to be.
+    /// Which device to be; with --hart a rotork-iq if nothing else is said.
     #[arg(long, value_enum, default_value_t = DeviceArg::Icon3000v2)]
     device: DeviceArg,
     /// The tag that it reports. Tags that begin with FV or PV are control valves.
@@ -203,7 +203,7 @@ impl ParityArg {
 pub(super) fn run(args: &Args) -> ExitCode {
     log_to_stderr();
     if args.device == DeviceArg::None {
-        return refuse("it must be some device; choose icon3000v2, icon3000 or dop");
+        return refuse("it must be some device; choose icon3000v2, icon3000, icon2000v4 or dop");
     }
     if Device::from(args.device).is_ddc() {
         return refuse(

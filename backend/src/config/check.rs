@@ -345,7 +345,7 @@ fn device(
     let simulated = line == Some(&LineConfig::Simulator);
     if simulated && !(device.is_icon() || device.is_dop() || target.is_some()) {
         let mut text =
-            "the simulator can be an \"icon3000v2\", an \"icon3000\" or a \"dop\" only".to_owned();
+            "the simulator can be an \"icon3000v2\", \"icon3000\" or \"icon2000v4\", a \"dop\", or a \"rotork-…\" only".to_owned();
         if device.is_ddc() {
             text += "; for field units write a bus of kind = \"ddc100-simulator\"";
         }
