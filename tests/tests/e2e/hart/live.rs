@@ -208,9 +208,9 @@ async fn a_line_shows_its_frames_and_is_searched() {
     page.wait_for("[data-testid=hart-link]").await;
     page.click("[data-testid=hart-scan]").await;
     page.wait_for("[data-testid=hart-found]").await;
-    page.until_within(
-        "[data-testid=frame-row]",
-        "/Read unique identifier/.test($.textContent)",
+    page.wait_within(
+        "[...document.querySelectorAll('[data-testid=frame-row]')]
+           .some(row => /Read unique identifier/.test(row.textContent))",
         SLOW,
     )
     .await;
