@@ -3,18 +3,22 @@
 use crate::Result;
 use crate::web::{Bundle, Program};
 
-/// The bar: what a browser must load before it can show anything, compressed.
+/// The bar: what a browser must load before it can show anything, compressed. A program that is
+/// loaded later is waited for as well, so it has the same bar.
 const BAR: u64 = 250_000;
 
-/// The bar of a program that is loaded later. It is waited for as well, but beside a page that works.
-const LATER: u64 = 270_000;
+/// Programs that are above the bar, and what they may not exceed until they are below it again. To
+/// be emptied, not to be added to.
+const DEBTS: [(&str, u64); 2] = [("actuator", 263_000), ("hart", 256_000)];
 
 /// Prints what each part of the bundle weighs, and fails above the bar.
 pub fn size(bundle: &Bundle) -> Result {
     let mut said = Vec::new();
-    let page = (&bundle.page, "first load", BAR);
-    let later = bundle.later.iter().map(|p| (p, "on demand", LATER));
-    for (program, when, bar) in [page].into_iter().chain(later) {
+    let page = (&bundle.page, "first load");
+    let later = bundle.later.iter().map(|program| (program, "on demand"));
+    for (program, when) in [page].into_iter().chain(later) {
+        let debt = DEBTS.iter().find(|(name, _)| *name == program.name);
+        let bar = debt.map_or(BAR, |(_, most)| *most);
         let total = measure(program, when, bar)?;
         if total > bar {
             said.push(format!(
